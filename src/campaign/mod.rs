@@ -66,7 +66,8 @@ impl Stage {
     fn version(self) -> u32 {
         match self {
             Self::Generate | Self::Extract => 2,
-            Self::Cycle => 17,
+            // 18: status and cause of each event.
+            Self::Cycle => 18,
             Self::Aggregate => 11,
             Self::Report => 15,
         }

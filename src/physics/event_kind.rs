@@ -1,6 +1,9 @@
 //! Kinds of events of a loop, for both methods: word, name and group of each in one table, which all other code reads.
 //!
-//! A further kind takes a variant with its row here, in [`EventKind`], and its columns in the tables of steps, avalanches and cases (`schema`).
+//! A further kind takes a variant with its row here, in [`EventKind`]. In the physics the compiler names the other
+//! places: its condition (`path::conditions`), its application (`path::apply`) and the status that it enters
+//! (`path::propagation`). Outside it takes one row in `schema::event_kinds`, with its columns and its colour: tables,
+//! statistics, report and explorer follow from it.
 
 use serde::{Deserialize, Serialize};
 use std::ops::Index;
@@ -60,16 +63,16 @@ impl EventKind {
         words
     };
 
-    /// Word, name and group.
-    const fn row(self) -> (&'static str, &'static str, EventGroup) {
+    /// Word, name, group and inverse.
+    const fn row(self) -> (&'static str, &'static str, EventGroup, Self) {
         match self {
-            Self::JumpIn => ("jump_in", "jump into contact", EventGroup::Jump),
-            Self::JumpOff => ("jump_off", "jump out of contact", EventGroup::Jump),
-            Self::Cover => ("cover", "absorption", EventGroup::Absorption),
-            Self::Uncover => ("uncover", "release", EventGroup::Absorption),
-            Self::Snap => ("snap", "snap-through", EventGroup::Snap),
-            Self::Merge => ("merge", "merging", EventGroup::Merging),
-            Self::Split => ("split", "splitting", EventGroup::Merging),
+            Self::JumpIn => ("jump_in", "jump into contact", EventGroup::Jump, Self::JumpOff),
+            Self::JumpOff => ("jump_off", "jump out of contact", EventGroup::Jump, Self::JumpIn),
+            Self::Cover => ("cover", "absorption", EventGroup::Absorption, Self::Uncover),
+            Self::Uncover => ("uncover", "release", EventGroup::Absorption, Self::Cover),
+            Self::Snap => ("snap", "snap-through", EventGroup::Snap, Self::Snap),
+            Self::Merge => ("merge", "merging", EventGroup::Merging, Self::Split),
+            Self::Split => ("split", "splitting", EventGroup::Merging, Self::Merge),
         }
     }
 
@@ -94,20 +97,50 @@ impl EventKind {
     /// The kind that undoes it.
     #[must_use]
     pub const fn reversed(self) -> Self {
-        match self {
-            Self::JumpIn => Self::JumpOff,
-            Self::JumpOff => Self::JumpIn,
-            Self::Cover => Self::Uncover,
-            Self::Uncover => Self::Cover,
-            Self::Snap => Self::Snap,
-            Self::Merge => Self::Split,
-            Self::Split => Self::Merge,
-        }
+        self.row().3
+    }
+
+    /// True for a jump of a free asperity into contact.
+    #[must_use]
+    pub fn begins_contact(self) -> bool {
+        self == Self::JumpIn
     }
 
     /// True for merging and splitting.
     pub(crate) fn is_merging(self) -> bool {
         self.group() == EventGroup::Merging
+    }
+}
+
+/// Status of a contact spot after an event and the relaxation with it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SpotStatus {
+    /// Out of contact. The parts of a merged contact are out of contact with it.
+    Free,
+    /// In contact. The parts of a merged contact have no load of their own.
+    Contact,
+    /// Absorbed by a larger contact.
+    Covered,
+    /// Part of a merged contact.
+    Merged,
+    /// A merged contact in whose place its two parts are in contact.
+    Split,
+}
+
+impl SpotStatus {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Free, Self::Contact, Self::Covered, Self::Merged, Self::Split];
+
+    /// Word in the tables.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Contact => "contact",
+            Self::Covered => "covered",
+            Self::Merged => "merged",
+            Self::Split => "split",
+        }
     }
 }
 
@@ -214,6 +247,6 @@ mod tests {
         assert!(EventKind::ALL.iter().enumerate().all(|(place, kind)| *kind as usize == place));
         let counts: EventCounts = EventKind::ALL.into_iter().chain([EventKind::Snap]).collect();
         assert!(EventKind::ALL.iter().all(|kind| counts[*kind] == if *kind == EventKind::Snap { 2 } else { 1 }));
-        assert_eq!(counts.sum(), 8);
+        assert_eq!(counts.sum(), EventKind::ALL.len() + 1);
     }
 }

@@ -90,7 +90,7 @@ pub mod theory;
 
 use crate::constants::Constants;
 pub use error::{LoopError, PhysicsError, Reason};
-pub use event_kind::{EventCounts, EventGroup, EventKind, RegionChange};
+pub use event_kind::{EventCounts, EventGroup, EventKind, RegionChange, SpotStatus};
 pub use loop_position::LoopPosition;
 
 /// Tolerances and limits of the physics, by module.

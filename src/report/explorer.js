@@ -3,7 +3,7 @@
   const source = document.getElementById("explorer-data");
   const host = document.getElementById("explorer");
   if (!source || !host) return;
-  const { cycles, kinds, names, letters } = JSON.parse(source.textContent);
+  const { cycles, names, colours, statuses, letters } = JSON.parse(source.textContent);
   const SIDE = 400;
   const COLOURS = { push: "#0072b2", pull: "#d55e00", unknown: "#777777", in: "#009e73", out: "#cc79a7", other: "#e69f00" };
   const state = { cycle: 0, loop: 0, k: 0, avalanche: -1, smallest: 2, layer: "pressure", absorbed: true, timer: 0, hidden: new Set() };
@@ -59,30 +59,19 @@
     return element;
   };
 
-  // Contact sets of all steps of a loop: events are replayed, stored steps are taken as they are.
-  const CONTACT_NEXT = ["jump_off", "cover", "snap", "merge"];
-  const replay = (cycle, loop) => {
-    const later = new Map();
-    loop.events.forEach((event, at) => (later.get(event[2]) || later.set(event[2], []).get(event[2])).push(at));
-    const next = (event, at) => {
-      const rest = later.get(event[2]).filter((other) => other > at);
-      return rest.length ? kinds[loop.events[rest[0]][1]] : "";
-    };
+  // Contact sets of all steps of a loop, from the status of spots after events; stored steps are taken as they are.
+  const contacts = (cycle, loop) => {
     const [inside, absorbed, sets] = [new Set(), new Set(), []];
     let at = 0;
     for (let k = 0; k < loop.f.length; k++) {
       for (; at < loop.events.length && loop.events[at][0] <= k; at++) {
-        const [, kind, spot] = loop.events[at];
+        const [spot, status] = [loop.events[at][2], statuses[loop.events[at][5]]];
         const parts = (cycle.merged || {})[spot] || [];
-        switch (kinds[kind]) {
-          case "jump_in": inside.add(spot); absorbed.delete(spot); break;
-          case "jump_off": inside.delete(spot); break;
-          case "cover": inside.delete(spot); absorbed.add(spot); break;
-          // A released asperity is in contact if its next event ends a contact.
-          case "uncover": absorbed.delete(spot); if (CONTACT_NEXT.includes(next(loop.events[at], at))) inside.add(spot); break;
-          case "merge": parts.forEach((part) => inside.delete(part)); inside.add(spot); break;
-          case "split": inside.delete(spot); parts.forEach((part) => inside.add(part)); break;
-        }
+        for (const of of [spot, ...parts]) inside.delete(of);
+        absorbed.delete(spot);
+        if (status === "contact") inside.add(spot);
+        if (status === "covered") absorbed.add(spot);
+        if (status === "split") parts.forEach((part) => inside.add(part));
       }
       const frame = loop.frames[k];
       if (frame) {
@@ -97,7 +86,7 @@
   // Radii over L and signs of the contacts at a step: stored, or interpolated and scaled to the contact area.
   const prepare = (cycle, loop) => {
     if (loop.sets) return;
-    loop.sets = cycle.x ? replay(cycle, loop) : loop.f.map(() => [[], []]);
+    loop.sets = cycle.x ? contacts(cycle, loop) : loop.f.map(() => [[], []]);
     loop.known = new Map();
     for (const k of Object.keys(loop.frames || {}).map(Number).sort((a, b) => a - b)) {
       const frame = loop.frames[k];
@@ -228,7 +217,7 @@
     return html("li", {}, toggle);
   };
   const legend = html("ul", { class: "legend" }, swatch(COLOURS.push, "compressive"), swatch(COLOURS.pull, "tensile"), swatch(COLOURS.unknown, "load not stored"),
-    swatch(COLOURS.in, "jump into contact, release"), swatch(COLOURS.out, "jump out of contact"), swatch(COLOURS.other, "absorption, merging, splitting, snap-through"));
+    ...["in", "out", "other"].map((colour) => swatch(COLOURS[colour], names.filter((_, kind) => colours[kind] === colour).join(", "))));
   host.append(
     html("p", { class: "controls" }, cycleLabel, loopLabel),
     html("p", { class: "controls" }, button("back", "◀", "Previous step", () => move(state.k - 1)), slider, button("next", "▶", "Next step", () => move(state.k + 1)), play),
@@ -306,7 +295,6 @@
     return shifts.flatMap((dx) => shifts.map((dy) => [x + dx, y + dy])).filter(([u, v]) => u > -r && u < SIDE + r && v > -r && v < SIDE + r);
   };
   const at = (spot) => [(cycle().x[spot] * SIDE) / 1e4, SIDE - (cycle().y[spot] * SIDE) / 1e4];
-  const isIn = (kind) => kind === "jump_in" || kind === "uncover";
   const current = () => loop().events.filter((event) => (state.avalanche < 0 ? event[0] === state.k : event[3] === state.avalanche));
   const bar = (drawing) => {
     const box = drawing.view;
@@ -346,7 +334,7 @@
     for (const [, kind, spot] of current()) {
       if (spot < 0) continue;
       const [x, y] = at(spot);
-      const colour = isIn(kinds[kind]) ? COLOURS.in : kinds[kind] === "jump_off" ? COLOURS.out : COLOURS.other;
+      const colour = COLOURS[colours[kind]];
       if (!state.hidden.has(colour)) lit.append(svg("circle", { cx: x.toFixed(2), cy: y.toFixed(2), r: ((sizes.get(spot) || 0.006) * SIDE + 4).toFixed(2), stroke: colour, "data-event": of.ids[spot] }));
     }
     map.append(lit, bar(map));

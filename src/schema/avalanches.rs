@@ -1,19 +1,8 @@
-//! The table of avalanches, and the kinds of events.
+//! The table of avalanches.
 
+use super::event_kinds::OF_AVALANCHES;
 use super::statistics::CASE;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text};
-use crate::physics::EventKind;
-use crate::physics::RegionChange;
-
-/// Every kind of event of the tables `events`, in the column order of the tables over realizations.
-pub const EVENT_KINDS: [&str; EventKind::ALL.len()] = EventKind::WORDS;
-
-/// The kind of event of a word in the tables; of a word of boundary elements the kind that corresponds to it.
-#[must_use]
-pub fn event_kind(word: &str) -> Option<EventKind> {
-    let of_region = || RegionChange::ALL.into_iter().find(|change| change.word() == word).map(RegionChange::kind);
-    EventKind::ALL.into_iter().find(|kind| kind.word() == word).or_else(of_region)
-}
 
 const AVALANCHE: &[Column] = &[
     REALIZATION,
@@ -31,24 +20,17 @@ const AVALANCHE: &[Column] = &[
     index("step", "Output step of the first event, as in the table steps"),
     real("approach_m", "m", "Mean penetration Δ at the first event, with the zero of the table steps"),
     count("event_count", "Size of the avalanche: number of events"),
-    count("jump_in_count", "Asperities that jumped into contact"),
-    count("jump_off_count", "Asperities that jumped out of contact"),
-    count("cover_count", "Asperities absorbed by a larger contact"),
-    count("uncover_count", "Asperities released from absorption"),
-    count("snap_count", "Snap-through events: transitions to another equilibrium with the same contacts"),
-    count("merge_count", "Pairs of contacts merged"),
-    count("split_count", "Merged contacts split"),
-    real(
-        "energy_lost_j",
-        "J",
-        "Dissipated energy, summed over the events; may be negative with absorption, which has no potential",
-    ),
+];
+
+const ENERGY: &[Column] = &[
+    real("energy_lost_j", "J", "Dissipated energy, summed over the events; may be negative with absorption, which has no potential"),
     real("energy_lost", "1", "Dissipated energy over E* A0 h_rms; sign as energy_lost_j"),
     real("load_drop_n", "N", "Normal load before the first event minus normal load after the last; negative for an increase"),
     real("area_change_m2", "m^2", "Contact area after the last event minus contact area before the first; negative for a decrease"),
 ];
 
-const COLUMNS: [Column; CASE.len() + AVALANCHE.len()] = join(&[CASE, AVALANCHE]);
+const COLUMNS: [Column; CASE.len() + AVALANCHE.len() + OF_AVALANCHES.len() + ENERGY.len()] =
+    join(&[CASE, AVALANCHE, &OF_AVALANCHES, ENERGY]);
 
 /// Events caused by one instability.
 pub static AVALANCHES: Table = Table {

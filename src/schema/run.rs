@@ -1,6 +1,7 @@
 //! The tables of one surface and of one of its cycles.
 
-use super::{CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, flag, index, real, text};
+use super::event_kinds::{KINDS_DOC, OF_STEPS};
+use super::{CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, flag, index, join, real, text};
 
 const CYCLE_CASE_ID: Column = text(
     "case_id",
@@ -49,86 +50,87 @@ pub static ASPERITIES: Table = Table {
     ],
 };
 
+const STEP_BEFORE_COUNTS: &[Column] = &[
+    CYCLE_ID,
+    CYCLE_CASE_ID,
+    REALIZATION,
+    STEP,
+    BRANCH,
+    MAX_LOAD,
+    real(
+        "approach_m",
+        "m",
+        "Mean penetration Δ of the rigid rough surface; 0 where the highest asperity touches the undeformed half-space",
+    ),
+    real("load_n", "N", "Normal load F, summed over all contact spots or grid points; positive in compression, negative in tension")
+        .from("Eq 1"),
+    real(
+        "least_load_n",
+        "N",
+        "Minimum normal load since the previous step, including the states directly before and after events, where the load is discontinuous",
+    ),
+    real("area_m2", "m^2", "Contact area A, summed over the discs of all contact spots, or over the grid points in contact"),
+    real(
+        "area_union_m2",
+        "m^2",
+        "Area of the union of all contact discs, in which overlaps count once; equal to area_m2 for boundary elements; null where it was not computed",
+    )
+    .or_null(),
+    count("contact_count", "Asperities in contact, or connected contact regions of boundary elements"),
+    count("covered_count", "Asperities absorbed by a larger contact spot, without load and area of their own"),
+];
+
+const STEP_AFTER_COUNTS: &[Column] = &[
+    count("held_count", "Frozen asperities: state kept in this step, because it alternated between absorbed and released"),
+    count("touching_count", "Contact spots that overlap a neighbour: distance below the sum of the contact radii"),
+    real("dissipated_j", "J", "Energy dissipated in the events since the previous step"),
+    real(
+        "work_j",
+        "J",
+        "Work done on the contact since the start of the branch: integral of the normal load over the mean penetration",
+    ),
+    real("residual_m", "m", "Residual of the equilibrium: maximum over all contact spots of |local penetration - JKR penetration|; null for boundary elements")
+        .or_null()
+        .from("Eqs 2, 5"),
+    real(
+        "drift_m",
+        "m",
+        "Predictor residual: maximum residual of the global problem before its solution, since the previous step; the error of the local solutions after events; null for boundary elements",
+    )
+    .or_null(),
+    real(
+        "stability",
+        "1",
+        "Smallest eigenvalue of the tangent of penetration with respect to contact radius, each column over its diagonal element: 1 without interaction, 0 at a limit point, negative for an unstable equilibrium; null for boundary elements",
+    )
+    .or_null(),
+    flag("converged", "True if the residual is below the tolerance"),
+    count("iteration_count", "Iterations of Newton's method and of relaxation since the previous step, in local and global problems"),
+    count("pair_evaluation_count", "Evaluations of the displacement of one contact by another since the previous step"),
+    count("product_count", "Matrix-vector products of the tangent since the previous step, one per Krylov iteration"),
+    count("transform_count", "Fourier transforms of a mesh or grid since the previous step; those of a patch count by their points"),
+    real("load", "1", "Normal load F/(E* A0); positive in compression"),
+    real("area", "1", "Contact area A/A0, summed over the discs of all contact spots"),
+    real("penetration", "1", "Mean penetration Δ/h_rms"),
+    METHOD,
+    real("residual", "1", "Residual of the equilibrium of boundary elements: rms of the pressure residual over the maximum tension; null for asperities")
+        .or_null(),
+    real("stiffness_n_m", "N/m", "Stiffness dF/dΔ of the contact of boundary elements at constant bonds; null for asperities").or_null(),
+    real("stiffness", "1", "Stiffness dF/dΔ of boundary elements over E* A0/h_rms; null for asperities").or_null(),
+    real("reversal_load", "1", "Load F_max/(E* A0) of the spec whose reversal is at this step; null elsewhere")
+        .or_null(),
+];
+
+const STEP_COLUMNS: [Column; STEP_BEFORE_COUNTS.len() + OF_STEPS.len() + STEP_AFTER_COUNTS.len()] =
+    join(&[STEP_BEFORE_COUNTS, &OF_STEPS, STEP_AFTER_COUNTS]);
+
 /// The path of one cycle, step by step.
 pub static STEPS: Table = Table {
     name: "steps",
     version: 1,
     file: "cycles/<id>/steps.parquet",
     doc: "One row per output step of loading, and of unloading from each load reversal.",
-    columns: &[
-        CYCLE_ID,
-        CYCLE_CASE_ID,
-        REALIZATION,
-        STEP,
-        BRANCH,
-        MAX_LOAD,
-        real(
-            "approach_m",
-            "m",
-            "Mean penetration Δ of the rigid rough surface; 0 where the highest asperity touches the undeformed half-space",
-        ),
-        real("load_n", "N", "Normal load F, summed over all contact spots or grid points; positive in compression, negative in tension")
-            .from("Eq 1"),
-        real(
-            "least_load_n",
-            "N",
-            "Minimum normal load since the previous step, including the states directly before and after events, where the load is discontinuous",
-        ),
-        real("area_m2", "m^2", "Contact area A, summed over the discs of all contact spots, or over the grid points in contact"),
-        real(
-            "area_union_m2",
-            "m^2",
-            "Area of the union of all contact discs, in which overlaps count once; equal to area_m2 for boundary elements; null where it was not computed",
-        )
-        .or_null(),
-        count("contact_count", "Asperities in contact, or connected contact regions of boundary elements"),
-        count("covered_count", "Asperities absorbed by a larger contact spot, without load and area of their own"),
-        count("jump_in_count", "Asperities that jumped into contact, or regions formed, since the previous step"),
-        count("jump_off_count", "Asperities that jumped out of contact, or regions lost, since the previous step"),
-        count("cover_count", "Asperities absorbed since the previous step"),
-        count("uncover_count", "Asperities released from absorption since the previous step"),
-        count("snap_count", "Snap-through events since the previous step: transitions to another equilibrium with the same contacts; regions grown or shrunk of boundary elements"),
-        count("merge_count", "Pairs of contacts merged, or regions joined, since the previous step"),
-        count("split_count", "Merged contacts split, or regions parted, since the previous step"),
-        count("held_count", "Frozen asperities: state kept in this step, because it alternated between absorbed and released"),
-        count("touching_count", "Contact spots that overlap a neighbour: distance below the sum of the contact radii"),
-        real("dissipated_j", "J", "Energy dissipated in the events since the previous step"),
-        real(
-            "work_j",
-            "J",
-            "Work done on the contact since the start of the branch: integral of the normal load over the mean penetration",
-        ),
-        real("residual_m", "m", "Residual of the equilibrium: maximum over all contact spots of |local penetration - JKR penetration|; null for boundary elements")
-            .or_null()
-            .from("Eqs 2, 5"),
-        real(
-            "drift_m",
-            "m",
-            "Predictor residual: maximum residual of the global problem before its solution, since the previous step; the error of the local solutions after events; null for boundary elements",
-        )
-        .or_null(),
-        real(
-            "stability",
-            "1",
-            "Smallest eigenvalue of the tangent of penetration with respect to contact radius, each column over its diagonal element: 1 without interaction, 0 at a limit point, negative for an unstable equilibrium; null for boundary elements",
-        )
-        .or_null(),
-        flag("converged", "True if the residual is below the tolerance"),
-        count("iteration_count", "Iterations of Newton's method and of relaxation since the previous step, in local and global problems"),
-        count("pair_evaluation_count", "Evaluations of the displacement of one contact by another since the previous step"),
-        count("product_count", "Matrix-vector products of the tangent since the previous step, one per Krylov iteration"),
-        count("transform_count", "Fourier transforms of a mesh or grid since the previous step; those of a patch count by their points"),
-        real("load", "1", "Normal load F/(E* A0); positive in compression"),
-        real("area", "1", "Contact area A/A0, summed over the discs of all contact spots"),
-        real("penetration", "1", "Mean penetration Δ/h_rms"),
-        METHOD,
-        real("residual", "1", "Residual of the equilibrium of boundary elements: rms of the pressure residual over the maximum tension; null for asperities")
-            .or_null(),
-        real("stiffness_n_m", "N/m", "Stiffness dF/dΔ of the contact of boundary elements at constant bonds; null for asperities").or_null(),
-        real("stiffness", "1", "Stiffness dF/dΔ of boundary elements over E* A0/h_rms; null for asperities").or_null(),
-        real("reversal_load", "1", "Load F_max/(E* A0) of the spec whose reversal is at this step; null elsewhere")
-            .or_null(),
-    ],
+    columns: &STEP_COLUMNS,
 };
 
 /// The contact spots at the steps that are kept.
@@ -258,10 +260,7 @@ pub static EVENTS: Table = Table {
         STEP,
         BRANCH,
         MAX_LOAD,
-        text(
-            "kind",
-            "Kind of event: \"jump_in\", \"jump_off\" (out of contact), \"cover\" (absorption), \"uncover\" (release), \"merge\", \"split\", or \"snap\" (snap-through: same contacts, new equilibrium); of boundary elements, change of the region whose area changed most: \"formed\", \"lost\", \"joined\", \"parted\", \"grown\" or \"shrunk\"",
-        ),
+        text("kind", KINDS_DOC),
         ASPERITY_OR_REGION,
         real("approach_m", "m", "Mean penetration Δ at the event, with the zero of the table steps").from("Eqs 3, 4"),
         index("avalanche_id", "Number of the avalanche, from 0 along the path; all events caused by one instability share it"),
@@ -275,5 +274,14 @@ pub static EVENTS: Table = Table {
             "Energy dissipated in the event and the relaxation that follows; 0 for further events of the same relaxation",
         ),
         METHOD,
+        text(
+            "status",
+            "Status of the asperity after the relaxation: \"free\", \"contact\", \"covered\" (absorbed), \"merged\" (part of a merged contact), or \"split\" (merged contact whose two parts are in contact again); null for boundary elements",
+        )
+        .or_null(),
+        text(
+            "cause",
+            "Kind of the event that causes the relaxation: its first event, or the merging or splitting before it in the avalanche that left the contact out of equilibrium; the columns dissipated_* of the table realizations sum energy_lost_j by it; of boundary elements the kind itself",
+        ),
     ],
 };

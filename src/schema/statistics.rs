@@ -1,5 +1,6 @@
 //! The tables over realizations.
 
+use super::event_kinds::event_kinds;
 use super::parameters::PARAMETER_COLUMNS;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, join, real, text};
 
@@ -139,6 +140,9 @@ const RESULTS: &[Column] = &[
 
 /// Parts of `dissipated` by branch and by kind of event, over E* A0 h_rms and in joule. Each of the two groups sums to `dissipated`.
 macro_rules! parts {
+    ($($kind:literal, $_remark:literal, $_colour:literal, $_step:literal, $_avalanche:literal, $of_kind:literal;)+) => {
+        parts! { "loading", "of events during loading"; "unloading", "of events during unloading"; $($kind, $of_kind;)+ }
+    };
     ($($part:literal, $what:literal;)+) => {
         const PARTS: &[&[Column]] = &[$(&[
             real(concat!("dissipated_", $part), "1", concat!("Dissipated energy over E* A0 h_rms ", $what)),
@@ -151,17 +155,7 @@ macro_rules! parts {
     };
 }
 
-parts! {
-    "loading", "of events during loading";
-    "unloading", "of events during unloading";
-    "jump_in", "of jumps into contact, including the relaxation that follows";
-    "jump_off", "of jumps out of contact, including the relaxation that follows";
-    "cover", "of absorption, including the relaxation that follows; may be negative, since absorption has no potential";
-    "uncover", "of release from absorption, including the relaxation that follows; may be negative, since absorption has no potential";
-    "snap", "of snap-through events: transitions to another equilibrium with the same contacts";
-    "merge", "of merging contacts, including the relaxation that follows";
-    "split", "of splitting contacts, including the relaxation that follows";
-}
+event_kinds!(parts);
 
 const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
 

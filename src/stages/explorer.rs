@@ -6,7 +6,7 @@ use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::constants::Constant;
 use crate::model::Boundary;
 use crate::physics::RegionChange;
-use crate::schema::{self, EventKind, Table};
+use crate::schema::{self, EVENT_COLOURS, EventKind, SpotStatus, Table};
 use crate::stats::{Listing, listing, significant};
 use crate::store::hdf5::read_surface;
 use crate::store::parquet::read_table;
@@ -58,8 +58,10 @@ pub(super) fn explorer(campaign: &Campaign, standings: &[Standing], cases: &Fram
         return Ok(None);
     }
     // No text of the data ends the element that holds it.
-    let (words, names): (Vec<_>, Vec<_>) = kinds().into_iter().unzip();
-    Ok(Some(json!({ "cycles": all, "kinds": words, "names": names, "letters": LETTERS }).to_string().replace('<', "\\u003c")))
+    let names: Vec<_> = kinds().into_iter().map(|(_, name)| name).collect();
+    let statuses = SpotStatus::ALL.map(SpotStatus::word);
+    let data = json!({ "cycles": all, "names": names, "colours": EVENT_COLOURS, "statuses": statuses, "letters": LETTERS });
+    Ok(Some(data.to_string().replace('<', "\\u003c")))
 }
 
 /// Cases of the two methods with otherwise equal parameters, for each surface that both have finished.
@@ -247,17 +249,19 @@ fn loops(tables: &Tables, spots: &Spots, energy_j: f64, length_m: f64) -> Result
     Ok(Value::Array(all))
 }
 
-/// Events of a loop: place of the step, kind, spot or -1, avalanche, dissipated energy over `E* A0 h_rms`.
+/// Events of a loop: place of the step, kind, spot or -1, avalanche, dissipated energy over `E* A0 h_rms`, status or null.
 fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j: f64) -> Result<Value, FrameError> {
     let numbered = kinds();
     let (steps, kinds, ids) = (events.i64("step")?, events.text("kind")?, events.i64_or_null("asperity_id")?);
+    let statuses = events.text_or_null("status")?;
     let (avalanches, energies, of) = (events.i64("avalanche_id")?, events.f64_or_null("energy_lost_j")?, events.f64_or_null("max_load")?);
     let mut rows: Vec<(usize, Value)> = Vec::new();
     for row in 0..steps.len() {
         let (Some(k), Some(kind)) = (places.get(&steps[row]), numbered.iter().position(|(word, _)| *word == kinds[row])) else { continue };
         let spot = spots.place(of[row], ids[row]).map_or(-1, |spot| spot as i64);
         let energy = significant(energies[row].unwrap_or_default() / energy_j, 3).parse::<f64>().unwrap_or_default();
-        rows.push((*k, json!([k, kind, spot, avalanches[row], energy])));
+        let status = SpotStatus::ALL.iter().position(|status| Some(status.word()) == statuses[row].as_deref());
+        rows.push((*k, json!([k, kind, spot, avalanches[row], energy, status])));
     }
     rows.sort_by_key(|(k, _)| *k);
     Ok(rows.into_iter().map(|(_, row)| row).collect())

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::StatsError;
-use crate::schema::{EVENT_KINDS, EVENTS, EventGroup, EventKind, event_kind};
+use crate::schema::{EVENT_KINDS, EVENTS, EventKind, event_kind};
 use crate::store::parquet::read_table;
 use crate::store::{Frame, FrameError};
 
@@ -18,6 +18,7 @@ pub(super) struct Event {
     /// Nothing while loading.
     pub(super) max_load: Option<f64>,
     pub(super) kind: EventKind,
+    pub(super) cause: EventKind,
     pub(super) asperity_id: i64,
     pub(super) approach_m: f64,
     pub(super) avalanche_id: i64,
@@ -39,24 +40,6 @@ pub(super) struct Lost {
     pub(super) unloading: f64,
     /// By the kind of the cause, as [`EVENT_KINDS`] has them.
     pub(super) kinds: [f64; EVENT_KINDS.len()],
-}
-
-/// Energies of the events of one avalanche \[J\], each with the kind of the event that causes it.
-///
-/// The ledger books the energy of a relaxation on one event and 0 on the others. That event is the cause, with one exception: merging and splitting
-/// are recorded before the contact is in equilibrium again, with 0. If other contacts jump or are absorbed on the way to that equilibrium, the first of
-/// these has the energy, which is mainly the difference between the potentials of the merged contact and of its parts. This energy belongs to
-/// the merging or splitting before it. Without this rule the energies of merging and splitting do not cancel: on one surface of
-/// Δγ = 0.005 J/m² with ζ = 32, a jump that follows a splitting has fourteen times Θ.
-fn by_cause<'a>(avalanche: &'a [&Event]) -> impl Iterator<Item = (EventKind, f64)> + 'a {
-    let mut exchange = None;
-    avalanche.iter().map(move |event| {
-        if event.energy_lost_j == 0.0 {
-            exchange = if event.kind.group() == EventGroup::Merging { Some(event.kind) } else { exchange };
-            return (event.kind, 0.0);
-        }
-        (exchange.take().unwrap_or(event.kind), event.energy_lost_j)
-    })
 }
 
 impl Events {
@@ -83,7 +66,7 @@ impl Events {
 
     /// The asperities that came into contact in that loop, each once, ascending.
     pub(super) fn touched(&self, turning_step: i64, max_load: f64) -> Vec<i64> {
-        let jumps = self.of_loop(turning_step, max_load).filter(|event| event.kind == EventKind::JumpIn);
+        let jumps = self.of_loop(turning_step, max_load).filter(|event| event.kind.begins_contact());
         let mut touched: Vec<i64> = jumps.map(|event| event.asperity_id).collect();
         touched.sort_unstable();
         touched.dedup();
@@ -96,18 +79,10 @@ impl Events {
     /// loop.
     pub(super) fn lost(&self, turning_step: i64, max_load: f64) -> Lost {
         let mut lost = Lost::default();
-        let events: Vec<&Event> = self.of_loop(turning_step, max_load).collect();
-        for event in &events {
-            if event.loading {
-                lost.loading += event.energy_lost_j;
-            } else {
-                lost.unloading += event.energy_lost_j;
-            }
-        }
-        for avalanche in events.chunk_by(|a, b| a.avalanche_id == b.avalanche_id) {
-            for (kind, energy_j) in by_cause(avalanche) {
-                lost.kinds[kind as usize] += energy_j;
-            }
+        for event in self.of_loop(turning_step, max_load) {
+            let branch = if event.loading { &mut lost.loading } else { &mut lost.unloading };
+            *branch += event.energy_lost_j;
+            lost.kinds[event.cause as usize] += event.energy_lost_j;
         }
         lost
     }
@@ -116,12 +91,14 @@ impl Events {
 /// The events of a table, or why a row is none.
 fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
     let (steps, avalanches, asperities) = (frame.i64("step")?, frame.i64("avalanche_id")?, frame.i64_or_null("asperity_id")?);
-    let (branches, kinds, max_loads) = (frame.text("branch")?, frame.text("kind")?, frame.f64_or_null("max_load")?);
+    let (branches, max_loads) = (frame.text("branch")?, frame.f64_or_null("max_load")?);
+    let (kinds, causes) = (frame.text("kind")?, frame.text("cause")?);
+    let known = |word: &str| event_kind(word).ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")));
     let (approaches, energies) = (frame.f64("approach_m")?, frame.f64("energy_lost_j")?);
     let (loads_before, loads_after) = (frame.f64("load_before_n")?, frame.f64("load_after_n")?);
     let (areas_before, areas_after) = (frame.f64("area_before_m2")?, frame.f64("area_after_m2")?);
     let event = |row: usize| {
-        let (branch, word, max_load) = (branches[row], kinds[row], max_loads[row]);
+        let (branch, max_load) = (branches[row], max_loads[row]);
         let loading = match (branch, max_load) {
             ("loading", None) => true,
             ("unloading", Some(_)) => false,
@@ -131,7 +108,8 @@ fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
             step: steps[row],
             loading,
             max_load,
-            kind: event_kind(word).ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))?,
+            kind: known(kinds[row])?,
+            cause: known(causes[row])?,
             asperity_id: asperities[row].unwrap_or(NO_ASPERITY),
             approach_m: approaches[row],
             avalanche_id: avalanches[row],

@@ -11,7 +11,7 @@ const DIGITS: usize = 64;
 
 /// Version of the layout of the bytes. A checkpoint of another version does not match its hash, and the unit starts again. Raise it with every change of a type
 /// that a checkpoint holds.
-pub const CHECKPOINT_VERSION: u8 = 5;
+pub const CHECKPOINT_VERSION: u8 = 6;
 
 /// Hash of a checkpoint and its version, as hexadecimal digits.
 fn seal(bytes: &[u8]) -> blake3::Hash {

@@ -2,6 +2,7 @@
 
 use crate::bench::{Bench, code, files, stderr, stdout};
 use hysteron::campaign::{Campaign, CycleUnit};
+use hysteron::physics::RegionChange;
 use hysteron::schema::{self, Table};
 use hysteron::spec::Spec;
 use hysteron::stages;
@@ -113,8 +114,8 @@ fn e2e_both_methods_side_by_side() {
     assert_eq!((&first["other"], second["loops"].as_array().unwrap().len()), (&serde_json::json!(1), 2));
     assert_eq!(second["other"], 0);
     // Events of all kinds have their place in the data.
-    for word in ["formed", "lost", "joined", "parted", "grown", "shrunk"] {
-        assert!(data["kinds"].as_array().unwrap().iter().any(|kind| kind == word), "{word}");
+    for change in RegionChange::ALL {
+        assert!(data["names"].as_array().unwrap().iter().any(|name| name == change.name()), "{change:?}");
     }
     for of in second["loops"].as_array().unwrap() {
         let maps = of["maps"].as_array().unwrap();

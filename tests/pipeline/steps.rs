@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hysteron::schema::{EVENTS, STEPS, Table};
+use hysteron::schema::{EVENTS, EventCounts, STEPS, Table};
 use hysteron::stats::{CaseInput, CycleInput, Given, Value};
 use hysteron::store::parquet::write_table;
 use hysteron::store::{Frame, FrameBuilder};
@@ -15,7 +15,7 @@ pub const FORCE_N: f64 = 1.0;
 /// E* A0 h_rms of every synthetic case \[J\].
 pub const ENERGY_J: f64 = 5e-6;
 
-/// One event: step, branch, max_load, kind, avalanche, then [load before, load after, area before, area after, energy lost].
+/// One event: step, branch, max_load, kind ("KIND by CAUSE" if another one causes it), avalanche, then [load before, load after, area before, area after, energy lost].
 pub type Event = (i64, &'static str, Option<f64>, &'static str, i64, [f64; 5]);
 
 /// Cases and their cycles, and the folder of their tables.
@@ -38,11 +38,12 @@ fn named(table: &'static Table, rows: usize) -> FrameBuilder {
 /// Writes the table of events that belongs to a table of steps.
 pub fn write_events(steps: &Path, events: &[Event]) {
     let reals = |at: usize| events.iter().map(move |event| event.5[at]);
+    let words = |event: &Event| event.3.split_once(" by ").unwrap_or((event.3, event.3));
     let frame = named(&EVENTS, events.len())
         .i64("step", events.iter().map(|event| event.0))
         .text("branch", events.iter().map(|event| event.1))
         .f64("max_load", events.iter().map(|event| event.2))
-        .text("kind", events.iter().map(|event| event.3))
+        .text("kind", events.iter().map(|event| words(event).0))
         .i64("asperity_id", vec![7; events.len()])
         .f64("approach_m", events.iter().map(|event| 1e-8 * event.0 as f64))
         .i64("avalanche_id", events.iter().map(|event| event.4))
@@ -52,6 +53,8 @@ pub fn write_events(steps: &Path, events: &[Event]) {
         .f64("area_after_m2", reals(3))
         .f64("energy_lost_j", reals(4))
         .text("method", vec!["asperities"; events.len()])
+        .text("status", vec!["contact"; events.len()])
+        .text("cause", events.iter().map(|event| words(event).1))
         .build()
         .unwrap();
     write_table(&events_path(steps), &frame, &[]).unwrap();
@@ -84,13 +87,7 @@ pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: 
         .f64("area_union_m2", reals(|step| step.3 * 0.9e-6))
         .count("contact_count", vec![contacts; steps.len()])
         .count("covered_count", vec![covered; steps.len()])
-        .count("jump_in_count", zeros())
-        .count("jump_off_count", zeros())
-        .count("cover_count", zeros())
-        .count("uncover_count", zeros())
-        .count("snap_count", zeros())
-        .count("merge_count", zeros())
-        .count("split_count", zeros())
+        .counts(vec![EventCounts::default(); steps.len()])
         .count("held_count", (0..steps.len()).map(|row| usize::from(row == 1)))
         .count("touching_count", vec![touching; steps.len()])
         .f64("dissipated_j", reals(|step| if step.0 == "loading" { 1e-10 } else { 2e-10 }))

@@ -166,9 +166,9 @@ impl Recorder {
         self.ways_before += ways.len();
         self.effort_before = effort;
         cycle.events.extend(recent.into_iter().map(|event| {
-            let PathEvent { kind, asperity, approach_m, avalanche, before, after, energy_lost_j } = event;
+            let PathEvent { kind, asperity, status, cause, approach_m, avalanche, before, after, energy_lost_j } = event;
             let site = Site::Asperity(problem.number(asperity));
-            Event { step: number, kind, site, approach_m, avalanche, before, after, energy_lost_j }
+            Event { step: number, kind, site, status: Some(status), cause, approach_m, avalanche, before, after, energy_lost_j }
         }));
         let keep = match settings.contacts {
             KeptContacts::All => true,

@@ -6,7 +6,9 @@
 
 use super::settings::Cycle;
 use crate::cycle::{Branch, Contact, Effort, Event, Step, StepCounts, StepNumerics};
+use crate::event_kind::SpotStatus;
 use crate::model::KeptContacts;
+use std::collections::BTreeMap;
 
 /// Appends the unloading from the `k`-th load reversal of a loading path without adhesion.
 ///
@@ -16,6 +18,10 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
     let others: Vec<usize> = cycle.turning[..k].iter().map(|(step, _)| *step).collect();
     let work_j = cycle.steps[reversal].work_j;
     let avalanches = cycle.events.iter().filter(|event| event.step <= reversal).map(|event| event.avalanche).max().unwrap_or(0);
+    let mut undone_at: Vec<Vec<Event>> = vec![Vec::new(); reversal + 1];
+    for event in undo(&cycle.events, reversal, avalanches) {
+        undone_at[event.step].push(event);
+    }
     let mut pending: Vec<Event> = Vec::new();
     let mut least_load_n = f64::INFINITY;
     for at in (0..=reversal).rev() {
@@ -36,8 +42,7 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
                 return;
             }
         }
-        let events = cycle.events.iter().filter(|event| event.step == at).map(|event| undo(event, avalanches)).collect::<Vec<_>>();
-        pending.extend(events.into_iter().rev());
+        pending.extend(undone_at[at].drain(..).rev());
     }
 }
 
@@ -55,9 +60,17 @@ fn reversed(step: &Step, max_load: Option<f64>, undone: &[Event], least_load_n: 
     }
 }
 
-/// An event in reverse; avalanches are numbered along the branch.
-fn undo(event: &Event, avalanches: u64) -> Event {
-    let kind = event.kind.reversed();
-    let avalanche = avalanches + 1 - event.avalanche;
-    Event { kind, avalanche, before: event.after, after: event.before, energy_lost_j: -event.energy_lost_j, ..*event }
+/// Events up to a step, each in reverse; avalanches are numbered along the branch.
+fn undo(events: &[Event], last: usize, avalanches: u64) -> Vec<Event> {
+    let mut known = BTreeMap::new();
+    let reverse = |event: &Event| {
+        let (kind, cause) = (event.kind.reversed(), event.cause.reversed());
+        // Before its first event an asperity is free, and a merged contact is two.
+        let first = if kind.is_merging() { SpotStatus::Split } else { SpotStatus::Free };
+        let status = known.insert(event.asperity(), event.status).flatten().or(Some(first));
+        let avalanche = avalanches + 1 - event.avalanche;
+        let (before, after, energy_lost_j) = (event.after, event.before, -event.energy_lost_j);
+        Event { kind, status, cause, avalanche, before, after, energy_lost_j, ..*event }
+    };
+    events.iter().filter(|event| event.step <= last).map(reverse).collect()
 }

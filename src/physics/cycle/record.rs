@@ -2,7 +2,7 @@
 
 use super::effort::Effort;
 use crate::LoopError;
-use crate::event_kind::{EventCounts, EventKind, RegionChange};
+use crate::event_kind::{EventCounts, EventKind, RegionChange, SpotStatus};
 use serde::{Deserialize, Serialize};
 
 /// Sense of the path: loading or unloading.
@@ -140,6 +140,10 @@ pub struct Event {
     pub kind: EventKind,
     /// Asperity that changes state, or change of a region.
     pub site: Site,
+    /// Status of the asperity afterwards; `None` for a region.
+    pub status: Option<SpotStatus>,
+    /// Kind of the event that causes the relaxation in which it happens. For a region the kind itself.
+    pub cause: EventKind,
     /// Mean penetration Δ \[m\].
     pub approach_m: f64,
     /// Number of its avalanche, counted along the branch.
@@ -162,12 +166,12 @@ pub enum Site {
 }
 
 impl Event {
-    /// Word of the kind in the tables.
+    /// Words of the kind and of the cause in the tables.
     #[must_use]
-    pub fn word(&self) -> &'static str {
+    pub fn words(&self) -> [&'static str; 2] {
         match self.site {
-            Site::Asperity(_) => self.kind.word(),
-            Site::Region(change) => change.word(),
+            Site::Asperity(_) => [self.kind, self.cause].map(EventKind::word),
+            Site::Region(change) => [change.word(); 2],
         }
     }
 

@@ -62,6 +62,8 @@ fn event(cycle: &records::Cycle, number: usize, of: &records::Event, units: &Uni
         step: of.step,
         kind: of.kind.kind(),
         site: Site::Region(of.kind),
+        status: None,
+        cause: of.kind.kind(),
         approach_m: cycle.steps[of.step].approach * units.spacing_m(),
         avalanche: number as u64,
         before: totals(of.before, units),

@@ -3,6 +3,7 @@
 use super::super::StageError;
 use super::super::identity::Identity;
 use super::Computed;
+use crate::physics::SpotStatus;
 use crate::physics::cycle::{Contact, Event, Step};
 use crate::schema;
 use crate::store::Frame;
@@ -87,7 +88,7 @@ impl<'a> Tables<'a> {
             .text("branch", spots.iter().map(|s| self.step(s.step).branch.word()))
             .f64("max_load", spots.iter().map(|s| self.step(s.step).max_load))
             .i64("asperity_id", spots.iter().map(|s| s.asperity.map(|asperity| asperity as i64)))
-            .text("state", spots.iter().map(|s| if s.covered { "covered" } else { "contact" }))
+            .text("state", spots.iter().map(|s| if s.covered { SpotStatus::Covered } else { SpotStatus::Contact }.word()))
             .f64("contact_radius_m", spots.iter().map(|s| s.contact_radius_m))
             .f64("load_n", spots.iter().map(|s| s.load_n))
             .f64("penetration_m", each(|s| s.penetration_m))
@@ -110,7 +111,7 @@ impl<'a> Tables<'a> {
             .i64("step", events.iter().map(|e| e.step as i64))
             .text("branch", events.iter().map(|e| self.step(e.step).branch.word()))
             .f64("max_load", events.iter().map(|e| self.step(e.step).max_load))
-            .text("kind", events.iter().map(Event::word))
+            .text("kind", events.iter().map(|e| e.words()[0]))
             .i64("asperity_id", events.iter().map(|e| e.asperity().map(|asperity| asperity as i64)))
             .f64("approach_m", each(|e| e.approach_m))
             .i64("avalanche_id", self.avalanches())
@@ -120,6 +121,8 @@ impl<'a> Tables<'a> {
             .f64("area_after_m2", each(|e| e.after.area_m2))
             .f64("energy_lost_j", each(|e| e.energy_lost_j))
             .text("method", self.method(events.len()))
+            .text_or_null("status", events.iter().map(|e| e.status.map(SpotStatus::word)))
+            .text("cause", events.iter().map(|e| e.words()[1]))
             .build()?)
     }
 

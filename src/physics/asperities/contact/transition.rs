@@ -11,7 +11,7 @@
 
 use super::problem::Problem;
 use super::state::{State, Status};
-use crate::event_kind::EventKind;
+use crate::event_kind::{EventKind, SpotStatus};
 use crate::model::Coalescence;
 
 /// Distance from the edge of a contact, over its radius, at which it absorbs an asperity.
@@ -39,6 +39,72 @@ pub(crate) struct Transition {
 }
 
 impl Transition {
+    /// A jump into contact.
+    pub(crate) fn jump_in(asperity: usize) -> Self {
+        Self { kind: EventKind::JumpIn, asperity, by: None }
+    }
+
+    /// A jump out of contact, at the end of a branch.
+    pub(crate) fn jump_off(asperity: usize) -> Self {
+        Self { kind: EventKind::JumpOff, asperity, by: None }
+    }
+
+    /// Absorption by another contact.
+    pub(crate) fn cover(asperity: usize, by: usize) -> Self {
+        Self { kind: EventKind::Cover, asperity, by: Some(by) }
+    }
+
+    /// Release by the absorbing contact.
+    pub(crate) fn uncover(asperity: usize, by: usize) -> Self {
+        Self { kind: EventKind::Uncover, asperity, by: Some(by) }
+    }
+
+    /// Snap-through.
+    pub(crate) fn snap(asperity: usize) -> Self {
+        Self { kind: EventKind::Snap, asperity, by: None }
+    }
+
+    /// Merging of a pair that is to become one contact.
+    pub(crate) fn merge(asperity: usize, by: usize) -> Self {
+        Self { kind: EventKind::Merge, asperity, by: Some(by) }
+    }
+
+    /// Merging that has created a contact.
+    pub(crate) fn merged(asperity: usize) -> Self {
+        Self { kind: EventKind::Merge, asperity, by: None }
+    }
+
+    /// Splitting of a merged contact.
+    pub(crate) fn split(asperity: usize) -> Self {
+        Self { kind: EventKind::Split, asperity, by: None }
+    }
+
+    /// True for a jump out of contact.
+    pub(crate) fn ends_contact(&self) -> bool {
+        self.kind == EventKind::JumpOff
+    }
+
+    /// True for a snap-through.
+    pub(crate) fn keeps_contacts(&self) -> bool {
+        self.kind == EventKind::Snap
+    }
+
+    /// True for merging.
+    pub(crate) fn merges(&self) -> bool {
+        self.kind == EventKind::Merge
+    }
+
+    /// Asperities whose numbers of changes limit it: both of a pair, none of a contact that ends.
+    pub(crate) fn limited_by(&self) -> impl Iterator<Item = usize> {
+        let other = self.by.filter(|_| self.merges());
+        [Some(self.asperity), other].into_iter().flatten().filter(|_| !self.ends_contact())
+    }
+
+    /// Status of its asperity in the state after it.
+    pub(crate) fn status_after(&self, state: &State) -> SpotStatus {
+        if self.kind == EventKind::Split { SpotStatus::Split } else { state.status[self.asperity].into() }
+    }
+
     /// True if this would undo one of the changes `moved` of the same avalanche.
     pub(crate) fn returns(&self, moved: &[Self], state: &State) -> bool {
         let i = self.asperity;
@@ -114,7 +180,7 @@ impl Problem {
         for &(i, a, residual) in spots {
             let overshoot = self.asperities[i].jump_off_radius() / a;
             if residual < 0.0 && overshoot > 1.0 && found.is_none_or(|(most, _)| overshoot > most) {
-                found = Some((overshoot, Transition { kind: EventKind::JumpOff, asperity: i, by: None }));
+                found = Some((overshoot, Transition::jump_off(i)));
             }
         }
         if found.is_none() && self.covers() {
@@ -122,7 +188,7 @@ impl Problem {
                 self.neighbours.within(j, absorbed_within(a), |r, i| {
                     let smaller = spots.binary_search_by_key(&i, |spot| spot.0).is_ok_and(|k| spots[k].1 < a);
                     if smaller && found.is_none_or(|(most, _)| a / r > most) {
-                        found = Some((a / r, Transition { kind: EventKind::Cover, asperity: i, by: Some(j) }));
+                        found = Some((a / r, Transition::cover(i, j)));
                     }
                 });
             }

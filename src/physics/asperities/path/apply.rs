@@ -9,7 +9,7 @@ use crate::PhysicsError;
 use crate::asperities::contact::Status;
 use crate::asperities::contact::transition::Transition;
 use crate::asperities::solve::local::Hold;
-use crate::event_kind::EventKind;
+use crate::event_kind::{EventKind, SpotStatus};
 
 impl EquilibriumPath {
     /// Applies a transition in the local problem that is at it, relaxes the local problem, and records both; nothing if the transition would be undone
@@ -160,7 +160,7 @@ impl EquilibriumPath {
                 self.predictor.state.barred[i] = true;
                 self.predictor.traces[i].forget();
                 let totals = self.predictor.totals(approach);
-                self.log.note(Transition { kind: EventKind::Uncover, asperity: i, by: Some(by) }, approach, totals);
+                self.log.note((Transition::uncover(i, by), SpotStatus::Free), approach, totals);
                 let gained_j = self.free_parts(i).1;
                 self.log.charge(-gained_j);
             }

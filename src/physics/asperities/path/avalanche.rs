@@ -9,7 +9,6 @@ use super::rejection::Rejection;
 use super::triggers::Trigger;
 use crate::asperities::contact::transition::Transition;
 use crate::asperities::contact::{State, Status};
-use crate::event_kind::EventKind;
 use std::sync::Arc;
 
 /// Transitions of an avalanche, and the asperities that it has touched.
@@ -44,10 +43,10 @@ impl EquilibriumPath {
             avalanche.open.sort();
             avalanche.open.dedup();
             let due = self.due_transitions(&avalanche.open, &avalanche.open);
-            let pending = |asperity| Transition { kind: EventKind::Snap, asperity, by: None };
             // Contacts merge and split in equilibrium: where others have yet to respond, they have grown too far.
             let mut coalescing = Vec::new();
-            let next = most_overdue(&due, &avalanche.moved, self.state()).or_else(|| self.worst_pending().map(pending)).or_else(|| {
+            let due_now = most_overdue(&due, &avalanche.moved, self.state());
+            let next = due_now.or_else(|| self.worst_pending().map(Transition::snap)).or_else(|| {
                 coalescing = self.due_coalescence(&avalanche.open);
                 most_overdue(&coalescing, &avalanche.moved, self.state())
             });
@@ -57,7 +56,7 @@ impl EquilibriumPath {
             };
             self.count_trial(approach, transition.asperity)?;
             self.gather(&transition, Some(approach));
-            if transition.kind == EventKind::Snap || self.has_pending() {
+            if transition.keeps_contacts() || self.has_pending() {
                 solves += 1;
                 let few = self.numerics().events.avalanche_solves;
                 propagated = solves <= few.max(self.state().contacts.len() / few);
@@ -85,7 +84,7 @@ impl EquilibriumPath {
         let problem = &*self.problem();
         for transition in moved {
             let i = transition.asperity;
-            if transition.kind == EventKind::Merge {
+            if transition.merges() {
                 self.predictor.keep_merged(problem, i);
             }
             match self.predictor.state.status[i] {

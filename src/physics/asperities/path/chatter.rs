@@ -1,7 +1,6 @@
 //! Guard against asperities that change their status to and fro, and contacts that merge and split to and fro.
 
 use crate::asperities::contact::transition::Transition;
-use crate::event_kind::EventKind;
 use serde::{Deserialize, Serialize};
 
 /// Changes of each asperity within the present longest increment, and asperities that are frozen by it.
@@ -26,12 +25,7 @@ impl ChatterGuard {
 
     /// True if a transition may be applied, where an asperity may change `most` times other than out of contact.
     pub(super) fn allows(&self, transition: &Transition, most: u8) -> bool {
-        let may_change = |i: usize| self.changes[i] < most;
-        match (transition.kind, transition.by) {
-            (EventKind::JumpOff, _) => true,
-            (EventKind::Merge, Some(by)) => may_change(transition.asperity) && may_change(by),
-            _ => may_change(transition.asperity),
-        }
+        transition.limited_by().all(|i| self.changes[i] < most)
     }
 
     /// True if a transition may be applied; otherwise its asperity is frozen.
@@ -73,7 +67,7 @@ impl ChatterGuard {
 
 #[cfg(test)]
 mod tests {
-    use super::{ChatterGuard, EventKind, Transition};
+    use super::{ChatterGuard, Transition};
     use crate::asperities::numerics::Events;
 
     const MOST: u8 = Events::DEFAULT.changes_per_asperity;
@@ -82,12 +76,12 @@ mod tests {
     fn law_a_merged_contact_goes_on_with_the_changes_of_its_parts() {
         let mut guard = ChatterGuard::default();
         guard.grow(2);
-        let merge = Transition { kind: EventKind::Merge, asperity: 0, by: Some(1) };
+        let merge = Transition::merge(0, 1);
         // Each merging of the same pair makes a new contact; its splitting is counted with it.
         for number in 2..2 + usize::from(MOST) {
             assert!(guard.allows(&merge, MOST));
             guard.join([0, 1]);
-            let split = Transition { kind: EventKind::Split, asperity: number, by: None };
+            let split = Transition::split(number);
             assert!(guard.allows(&split, MOST));
             guard.count(number);
         }
@@ -98,13 +92,13 @@ mod tests {
     fn law_an_asperity_is_frozen_after_its_changes_until_the_next_increment() {
         let mut guard = ChatterGuard::default();
         guard.grow(2);
-        let change = |asperity| Transition { kind: EventKind::Cover, asperity, by: Some(2) };
+        let change = |asperity| Transition::cover(asperity, 2);
         for _ in 0..MOST {
             assert!(guard.allows(&change(1), MOST));
             guard.count(1);
         }
         assert!(!guard.allows(&change(1), MOST) && guard.allows(&change(0), MOST));
-        assert!(guard.allows(&Transition { kind: EventKind::JumpOff, ..change(1) }, MOST));
+        assert!(guard.allows(&Transition::jump_off(1), MOST));
         guard.freeze(1);
         guard.freeze(1);
         assert_eq!(guard.frozen_count(), 1);

@@ -1,5 +1,6 @@
 //! Condition of each kind of event: what reaches which value. Whether it is due, how late it is and where it is located follow from it.
 
+use super::predictor::Predictor;
 use crate::asperities::contact::problem::Problem;
 use crate::asperities::contact::state::{State, Status};
 use crate::asperities::contact::transition::Transition;
@@ -47,6 +48,21 @@ impl Problem {
                 | EventKind::Split,
                 ..,
             ) => None,
+        }
+    }
+}
+
+impl Predictor {
+    /// True if a transition that was due is still possible.
+    pub(crate) fn permits(&self, change: &Transition) -> bool {
+        let (i, state) = (change.asperity, &self.state);
+        match (change.kind, state.status[i], change.by) {
+            (EventKind::JumpIn, ..) => !state.barred[i],
+            (EventKind::Uncover, Status::Covered { by, .. }, _) => Some(by) == change.by,
+            (EventKind::Cover, _, Some(by)) => state.radius[i] < state.radius[by],
+            (EventKind::Merge, _, Some(by)) => self.may_merge(i, by),
+            (EventKind::Uncover, ..) => false,
+            (EventKind::JumpOff | EventKind::Cover | EventKind::Snap | EventKind::Merge | EventKind::Split, ..) => true,
         }
     }
 }

@@ -13,7 +13,6 @@ use crate::asperities::solve::precision::Precision;
 use crate::asperities::solve::residual::NotConverged;
 use crate::asperities::solve::trace::PenetrationTrace;
 use crate::cycle::Totals;
-use crate::event_kind::EventKind;
 use crate::math::vector::dot;
 
 /// Reason for the difference between the predictors and the solution.
@@ -252,7 +251,7 @@ impl EquilibriumPath {
         for change in changes {
             self.predictor.traces[change.asperity].forget();
             self.predictor.set(change.asperity, change.status(&self.problem()), 0.0);
-            if change.kind == EventKind::JumpOff {
+            if change.ends_contact() {
                 self.free_parts(change.asperity);
             }
         }
@@ -264,7 +263,7 @@ impl EquilibriumPath {
     /// Records a relaxation without transitions as a snap of a contact.
     fn record_snap(&mut self, asperity: usize, before: Totals, target: f64) {
         let (after, _) = self.problem().totals(self.state());
-        self.record(&[Transition { kind: EventKind::Snap, asperity, by: None }], target, before, after, 0.0);
+        self.record(&[Transition::snap(asperity)], target, before, after, 0.0);
     }
 
     /// Relaxes the contact at `target` \[m\], as the last resort.

@@ -81,7 +81,7 @@ mod tests {
     use crate::asperities::contact::transition::Transition;
     use crate::asperities::path::event_log::EventLog;
     use crate::cycle::Totals;
-    use crate::event_kind::EventKind;
+    use crate::event_kind::SpotStatus;
 
     #[test]
     fn law_the_work_of_an_expected_load_is_counted_from_where_it_is_expected() {
@@ -97,8 +97,7 @@ mod tests {
         let mut log = EventLog::default();
         let mut ledger = EnergyLedger::new(0.0, 0, 10.0);
         log.begin_avalanche();
-        let snap = Transition { kind: EventKind::Snap, asperity: 0, by: None };
-        log.record(&[snap], 0.0, Totals::default(), Totals::default(), 1.0);
+        log.record(&[(Transition::snap(0), SpotStatus::Contact)], 0.0, [Totals::default(); 2], 1.0);
         log.work_j = 2.0;
         ledger.charge_last_event();
         // Π + dissipated − work stays 10: with Π = 5 and 2 of work the event has dissipated 7.

@@ -3,6 +3,7 @@
 use crate::asperities::contact::event::Event;
 use crate::asperities::contact::transition::Transition;
 use crate::cycle::Totals;
+use crate::event_kind::{EventKind, SpotStatus};
 use serde::{Deserialize, Serialize};
 
 /// Events, work and load along a branch.
@@ -47,28 +48,37 @@ impl EventLog {
         self.fresh = true;
     }
 
-    /// Records the transitions of one relaxation; the first has its energy.
-    pub(crate) fn record(&mut self, moved: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
-        if moved.is_empty() {
-            return;
-        }
+    /// Records the transitions of one relaxation, with the status after it; the first has its energy.
+    pub(crate) fn record(&mut self, moved: &[(Transition, SpotStatus)], approach_m: f64, [before, after]: [Totals; 2], energy: f64) {
+        let Some((first, _)) = moved.first() else { return };
         self.avalanches += u64::from(std::mem::take(&mut self.fresh));
+        let (cause, avalanche) = (self.cause(first.kind), self.avalanches);
         self.charged = self.events.len();
-        for (k, change) in moved.iter().enumerate() {
-            let (from, energy) = if k == 0 { (before, energy) } else { (after, 0.0) };
-            self.enter(change, approach, from, after, energy);
-        }
+        self.events.extend(moved.iter().enumerate().map(|(k, (change, status))| {
+            let Transition { kind, asperity, .. } = *change;
+            let (before, energy_lost_j) = if k == 0 { (before, energy) } else { (after, 0.0) };
+            Event { kind, asperity, status: *status, cause, approach_m, avalanche, before, after, energy_lost_j }
+        }));
     }
 
     /// Records a transition without a change of load; later charges still belong to the last relaxation.
-    pub(crate) fn note(&mut self, change: Transition, approach: f64, totals: Totals) {
-        self.avalanches += u64::from(std::mem::take(&mut self.fresh));
-        self.enter(&change, approach, totals, totals, 0.0);
+    pub(crate) fn note(&mut self, change: (Transition, SpotStatus), approach: f64, totals: Totals) {
+        let charged = self.charged;
+        self.record(&[change], approach, [totals; 2], 0.0);
+        self.charged = charged;
     }
 
-    fn enter(&mut self, change: &Transition, approach_m: f64, before: Totals, after: Totals, energy_lost_j: f64) {
-        let (kind, asperity, avalanche) = (change.kind, change.asperity, self.avalanches);
-        self.events.push(Event { kind, asperity, approach_m, avalanche, before, after, energy_lost_j });
+    /// Cause of a relaxation whose first event has this `kind`: itself, or merging or splitting before it.
+    ///
+    /// Merging and splitting exchange contacts at equal energy. They are recorded before the contact is in equilibrium
+    /// again, with the energy 0 if nothing moves at once. They cause the relaxations on the way to that equilibrium, up
+    /// to the first with an energy. This is mainly the difference between the potentials of the merged contact
+    /// and of its parts. Without this rule the energies of merging and splitting do not cancel: on one surface of
+    /// Δγ = 0.005 J/m² with ζ = 32, a jump that follows a splitting has fourteen times Θ.
+    fn cause(&self, kind: EventKind) -> EventKind {
+        let is_before = |event: &&Event| event.avalanche == self.avalanches && event.energy_lost_j == 0.0;
+        let before = self.events.get(self.charged).filter(is_before).map(|event| [event.kind, event.cause]);
+        before.into_iter().flatten().find(|kind| kind.is_merging()).unwrap_or(kind)
     }
 
     /// Ends a segment without a jump of the load, which is known at its ends only.
@@ -94,5 +104,48 @@ impl EventLog {
     /// Copy without events and segments.
     pub(crate) fn clone_without_events(&self) -> Self {
         Self { events: Vec::new(), segments: Vec::new(), ..*self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{EventKind, EventLog, SpotStatus, Totals, Transition};
+
+    /// Causes of relaxations of one event each, with their energies \[J\].
+    fn causes(relaxations: &[(Transition, f64)]) -> Vec<EventKind> {
+        let mut log = EventLog::default();
+        log.begin_avalanche();
+        for (first, energy) in relaxations {
+            let moved = [*first, Transition::jump_off(9)].map(|change| (change, SpotStatus::Free));
+            log.record(&moved, 0.0, [Totals::default(); 2], *energy);
+        }
+        log.events.iter().step_by(2).map(|event| event.cause).collect()
+    }
+
+    #[test]
+    fn law_what_follows_a_splitting_without_energy_is_caused_by_it() {
+        let [split, jump, cover] = [Transition::split(5), Transition::jump_off(1), Transition::cover(2, 3)];
+        let [of_split, of_jump, of_cover] = [split, jump, cover].map(|change| change.kind);
+        assert_eq!(causes(&[(split, 0.0), (jump, 2.0), (cover, 1.0)]), [of_split, of_split, of_cover]);
+        assert_eq!(causes(&[(split, 0.0), (cover, 0.0), (jump, 2.0)]), [of_split; 3]);
+        assert_eq!(causes(&[(split, 1.0), (jump, 2.0)]), [of_split, of_jump]);
+        assert_eq!(causes(&[(jump, 2.0), (split, 0.0)]), [of_jump, of_split]);
+    }
+
+    #[test]
+    fn law_a_cause_ends_with_its_avalanche_and_with_an_energy() {
+        let [split, uncover, jump] = [Transition::split(5), Transition::uncover(2, 3), Transition::jump_off(1)];
+        let mut log = EventLog::default();
+        let record = |log: &mut EventLog, change| log.record(&[(change, SpotStatus::Free)], 0.0, [Totals::default(); 2], 0.0);
+        for change in [split, jump, split] {
+            log.begin_avalanche();
+            record(&mut log, change);
+        }
+        // A transition without a change of load does not take a later charge, which is that of the splitting.
+        log.note((uncover, SpotStatus::Free), 0.0, Totals::default());
+        log.charge(1.0);
+        record(&mut log, jump);
+        let causes: Vec<EventKind> = log.events.iter().map(|event| event.cause).collect();
+        assert_eq!(causes, [split, jump, split, split, jump].map(|change| change.kind));
     }
 }

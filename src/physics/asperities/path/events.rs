@@ -6,9 +6,9 @@ use super::conditions::Condition;
 use super::equilibrium_path::EquilibriumPath;
 use super::expectation::PredictedEvent;
 use super::rejection::Rejection;
+use crate::asperities::contact::transition::Transition;
 use crate::asperities::solve::local::curve::{CurveEnd, CurveSearch};
 use crate::asperities::solve::local::{Hold, LocalProblem};
-use crate::event_kind::EventKind;
 use crate::math::bracket::{End, Illinois};
 
 /// Position of an event on the solution curve: the local problem is there.
@@ -98,7 +98,7 @@ impl EquilibriumPath {
                 queue.push(PredictedEvent { approach, ..event });
                 return Ok(Outcome::Absent);
             }
-            self.finish_location(located, transition.kind, &mut avalanche);
+            self.finish_location(located, &transition, &mut avalanche);
             self.apply(transition, Some(located), &mut avalanche)?;
         }
         Ok(self.run_avalanche(avalanche)?.map_or(Outcome::Unpropagated, Outcome::Touched))
@@ -194,10 +194,10 @@ impl EquilibriumPath {
     }
 
     /// Advances the predictor of the members to a located event, and counts the work.
-    fn finish_location(&mut self, located: Located, kind: EventKind, avalanche: &mut Avalanche) {
+    fn finish_location(&mut self, located: Located, transition: &Transition, avalanche: &mut Avalanche) {
         let fold = matches!(located, Located::Fold(_));
         // Near the end of a branch the state is smooth in the radius; at the edge of a contact it is smooth in the mean penetration.
-        let curve = if fold || kind == EventKind::JumpOff { std::mem::take(&mut self.neighbourhood.local.way) } else { Vec::new() };
+        let curve = if fold || transition.ends_contact() { std::mem::take(&mut self.neighbourhood.local.way) } else { Vec::new() };
         self.propagate_curve(&curve, avalanche);
         // At a fold they are infinite.
         let rates = (!fold).then(|| self.neighbourhood.local.rates(&self.solver.problem).0);

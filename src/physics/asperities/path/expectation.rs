@@ -5,7 +5,6 @@ use super::predictor::Predictor;
 use crate::asperities::contact::problem::Problem;
 use crate::asperities::contact::state::Status;
 use crate::asperities::contact::transition::{Transition, absorbing_radius};
-use crate::event_kind::EventKind;
 
 /// Transition that is expected, with its mean penetration \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,10 +57,7 @@ impl Predictor {
         let left = (target - trace.at) * sign;
         // A curved way may end a little earlier than a straight one.
         if (left > 0.0 && speed > 0.0 || way == 0.0) && way <= 1.1 * left {
-            due.push(PredictedEvent {
-                approach: trace.at + sign * way,
-                transition: Transition { kind: EventKind::JumpIn, asperity: i, by: None },
-            });
+            due.push(PredictedEvent { approach: trace.at + sign * way, transition: Transition::jump_in(i) });
         }
     }
 
@@ -70,21 +66,20 @@ impl Predictor {
         let penetration = trace.penetration_or_nan();
         let speed = sign * trace.rate;
         let left = (target - trace.at) * sign;
-        let mut offer = |way: f64, kind: EventKind, i: usize, by: Option<usize>| {
-            due.push(PredictedEvent { approach: trace.at + sign * way.max(0.0), transition: Transition { kind, asperity: i, by } });
+        let mut offer = |way: f64, transition: Transition| {
+            due.push(PredictedEvent { approach: trace.at + sign * way.max(0.0), transition });
         };
         if speed < 0.0 {
             let way = (penetration - asperity.jump_off_penetration()) / -speed;
             if way <= problem.numerics.events.branch_end_distance * left {
-                offer(way.min(left), EventKind::JumpOff, j, None);
+                offer(way.min(left), Transition::jump_off(j));
             }
-            let split = Transition { kind: EventKind::Split, asperity: j, by: None };
-            let uncover = |i: usize| Transition { kind: EventKind::Uncover, asperity: i, by: Some(j) };
-            for transition in std::iter::once(split).chain(self.covered_by(j).map(uncover)) {
+            let uncover = |i: usize| Transition::uncover(i, j);
+            for transition in std::iter::once(Transition::split(j)).chain(self.covered_by(j).map(uncover)) {
                 let Some(Condition::Shrinking { value_m, .. }) = problem.condition(&transition, &self.state) else { continue };
                 let way = (penetration - asperity.penetration(value_m)) / -speed;
                 if a <= value_m || way <= 1.1 * left {
-                    offer(if a <= value_m { 0.0 } else { way }, transition.kind, transition.asperity, transition.by);
+                    offer(if a <= value_m { 0.0 } else { way }, transition);
                 }
             }
         } else if speed > 0.0 && problem.covers() {
@@ -96,7 +91,7 @@ impl Predictor {
                 let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
                 // Two contacts that grow towards one another's centres have a fold before they reach them.
                 if open && r >= a && (reach >= r || self.state.radius[i] > twins * r) {
-                    offer(((asperity.penetration(r) - penetration) / speed).min(left), EventKind::Cover, i, Some(j));
+                    offer(((asperity.penetration(r) - penetration) / speed).min(left), Transition::cover(i, j));
                 }
             });
         }

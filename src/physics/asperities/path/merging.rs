@@ -7,7 +7,6 @@ use crate::asperities::contact::Status;
 use crate::asperities::contact::merged_spot::pair_of;
 use crate::asperities::contact::transition::Transition;
 use crate::cycle::Merged;
-use crate::event_kind::EventKind;
 use std::sync::Arc;
 
 /// Effect of the end of a field on the members of the local problem.
@@ -27,7 +26,7 @@ impl EquilibriumPath {
         let pair = [transition.by.unwrap_or(transition.asperity), transition.asperity];
         let approach = self.neighbourhood.local.approach;
         let at = pair.map(|i| self.neighbourhood.local.find(i));
-        let [Some(first), Some(second)] = at else { return Ok(Transition { kind: EventKind::Snap, ..transition }) };
+        let [Some(first), Some(second)] = at else { return Ok(Transition::snap(transition.asperity)) };
         let local = &self.neighbourhood.local;
         let radii = [local.radius[first], local.radius[second]];
         let share = radii.map(|a| a * a / (radii[0] * radii[0] + radii[1] * radii[1]));
@@ -62,7 +61,7 @@ impl EquilibriumPath {
         self.pending.set_applied(number);
         self.chatter.join(pair);
         *before = self.exchanged(before, 0.0);
-        Ok(Transition { kind: EventKind::Merge, asperity: number, by: None })
+        Ok(Transition::merged(number))
     }
 
     /// Replaces a merged contact of the local problem by its parts, with its present area; the local problem is the one `before` any response.

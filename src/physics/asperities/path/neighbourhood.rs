@@ -10,7 +10,6 @@ use crate::asperities::contact::transition::Transition;
 use crate::asperities::contact::{Problem, Status};
 use crate::asperities::solve::local::{Extent, LocalProblem};
 use crate::cycle::Effort;
-use crate::event_kind::EventKind;
 use crate::model::Interaction;
 
 /// Local problem of an event with its shell.
@@ -57,14 +56,10 @@ impl Neighbourhood {
     /// Gathers the contacts nearest to a transition, at a mean penetration \[m\] or where they were known last.
     pub(super) fn gather(&mut self, within: &Surroundings<'_>, transition: &Transition, approach: Option<f64>, effort: &mut Effort) {
         let Surroundings { problem, predictor, pending, sense, .. } = within;
-        let centre = match transition.kind {
-            EventKind::Cover | EventKind::Uncover | EventKind::Merge => transition.by.unwrap_or(transition.asperity),
-            _ => transition.asperity,
-        };
-        self.centre = *problem.place(centre);
+        self.centre = *problem.place(transition.by.unwrap_or(transition.asperity));
         let Selection { members, mut watched, shell, reach } = within.select(transition, &self.centre);
         (self.shell, self.reach) = (shell, reach);
-        if transition.kind == EventKind::JumpIn
+        if transition.kind.begins_contact()
             && let Err(at) = watched.binary_search(&transition.asperity)
         {
             watched.insert(at, transition.asperity);
@@ -72,7 +67,7 @@ impl Neighbourhood {
         }
         let traces = &predictor.traces;
         let approach = approach.unwrap_or_else(|| {
-            let asperity = (transition.kind == EventKind::JumpIn).then_some(transition.asperity);
+            let asperity = transition.kind.begins_contact().then_some(transition.asperity);
             let known = members.iter().copied().chain(asperity).map(|i| traces[i].at);
             known.max_by(|u, v| (u * sense).total_cmp(&(v * sense))).unwrap_or(predictor.state.approach_m)
         });

@@ -10,7 +10,6 @@ use crate::asperities::contact::state::{State, Status};
 use crate::asperities::contact::transition::Transition;
 use crate::asperities::solve::trace::PenetrationTrace;
 use crate::cycle::{Merged, Totals};
-use crate::event_kind::EventKind;
 use crate::jkr::Asperity;
 
 /// Number of contacts whose radii are computed at once.
@@ -279,6 +278,6 @@ impl Predictor {
         let radius = &self.state.radius;
         let first = (radius[i], j) < (radius[j], i);
         let (asperity, by) = if first { (i, j) } else { (j, i) };
-        Transition { kind: EventKind::Merge, asperity, by: Some(by) }
+        Transition::merge(asperity, by)
     }
 }

@@ -95,7 +95,7 @@ impl EquilibriumPath {
     pub(super) fn relax_or_snap(&mut self, leader: usize) -> Result<Vec<Transition>, Rejection> {
         let mut applied = self.neighbourhood.local.relax(&self.solver.problem, None, &mut self.solver.effort)?;
         if applied.is_empty() {
-            applied.push(Transition { kind: EventKind::Snap, asperity: leader, by: None });
+            applied.push(Transition::snap(leader));
         }
         Ok(applied)
     }
@@ -295,9 +295,13 @@ impl EquilibriumPath {
 
     /// Records the transitions of one relaxation; its energy is that of the first.
     pub(super) fn record(&mut self, applied: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
-        for transition in applied.iter().filter(|transition| !matches!(transition.kind, EventKind::JumpOff | EventKind::Merge)) {
-            self.chatter.count(transition.asperity);
+        let mut moved = Vec::with_capacity(applied.len());
+        for transition in applied {
+            if !matches!(transition.kind, EventKind::JumpOff | EventKind::Merge) {
+                self.chatter.count(transition.asperity);
+            }
+            moved.push((*transition, transition.status_after(self.state())));
         }
-        self.log.record(applied, approach, before, after, energy);
+        self.log.record(&moved, approach, [before, after], energy);
     }
 }

@@ -5,7 +5,6 @@ use super::predictor::Predictor;
 use crate::asperities::contact::problem::Problem;
 use crate::asperities::contact::state::Status;
 use crate::asperities::contact::transition::{Transition, absorbed_within};
-use crate::event_kind::EventKind;
 
 /// Transition that is due, with its overshoot: dimensionless, 0 at the event and positive beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,24 +23,24 @@ impl Problem {
         let mut inside = Vec::new();
         for &j in touched {
             for i in predictor.covered_by(j) {
-                add(Transition { kind: EventKind::Uncover, asperity: i, by: Some(j) });
+                add(Transition::uncover(i, j));
             }
             if state.status[j] != Status::Contact {
                 continue;
             }
-            add(Transition { kind: EventKind::JumpOff, asperity: j, by: None });
+            add(Transition::jump_off(j));
             if self.covers() {
                 self.neighbours.within(j, absorbed_within(state.radius[j]), |_, i| {
                     if self.can_be_covered(state, i) && state.radius[i] < state.radius[j] {
                         inside.push(i);
-                        add(Transition { kind: EventKind::Cover, asperity: i, by: Some(j) });
+                        add(Transition::cover(i, j));
                     }
                 });
             }
         }
         for &i in free {
             if state.status[i] == Status::Free && !state.barred[i] && !inside.contains(&i) {
-                add(Transition { kind: EventKind::JumpIn, asperity: i, by: None });
+                add(Transition::jump_in(i));
             }
         }
         due
@@ -56,7 +55,7 @@ impl Problem {
         }
         let mut add = |transition: Transition| due.extend(self.trigger(transition, predictor));
         for &j in touched.iter().filter(|j| state.status[**j] == Status::Contact) {
-            add(Transition { kind: EventKind::Split, asperity: j, by: None });
+            add(Transition::split(j));
             predictor.pairs(self, j, state.radius[j], |i, r| {
                 if r <= state.radius[i] + state.radius[j] {
                     add(predictor.merging(i, j));
@@ -68,16 +67,7 @@ impl Problem {
 
     /// True if a transition that was due still is.
     pub(crate) fn is_due(&self, change: &Transition, predictor: &Predictor) -> bool {
-        let (i, state) = (change.asperity, &predictor.state);
-        let possible = match (change.kind, state.status[i], change.by) {
-            (EventKind::JumpIn, ..) => !state.barred[i],
-            (EventKind::Uncover, Status::Covered { by, .. }, _) => Some(by) == change.by,
-            (EventKind::Cover, _, Some(by)) => state.radius[i] < state.radius[by],
-            (EventKind::Merge, _, Some(by)) => predictor.may_merge(i, by),
-            (EventKind::Uncover, ..) => false,
-            (EventKind::JumpOff | EventKind::Cover | EventKind::Snap | EventKind::Merge | EventKind::Split, ..) => true,
-        };
-        possible && self.overshoot(change, predictor).is_some_and(|overshoot| overshoot >= 0.0)
+        predictor.permits(change) && self.overshoot(change, predictor).is_some_and(|overshoot| overshoot >= 0.0)
     }
 
     /// A transition with its overshoot, if it is due.

@@ -16,6 +16,7 @@ use super::super::surface::{Scale, scale};
 use super::{Computed, CycleTask};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::AsperityOptions;
+use crate::physics::SpotStatus;
 use crate::physics::asperities::contact::rows::Kept;
 use crate::physics::asperities::contact::{Problem, Rules, State, Status};
 use crate::physics::asperities::{Asperities, Options};
@@ -109,7 +110,7 @@ pub(super) fn unload_again(
     let status = |k: usize| match (covering[k], release[k], into[k]) {
         (Some(by), Some(release_m), _) => Status::Covered { by: by as usize, release_m },
         (_, _, Some(into)) => Status::Merged { into: into as usize },
-        _ if states[k] == word(Status::Contact) => Status::Contact,
+        _ if states[k] == SpotStatus::Contact.word() => Status::Contact,
         _ => Status::Free,
     };
     let kept = |&k: &usize| Kept { asperity: asperities[k] as usize, status: status(k), radius_m: radii[k], barred: barred[k] };
@@ -159,7 +160,7 @@ fn turning(of: Identity<'_>, cycle: &Cycle<State>, problem: &Problem, loads: &[f
         .f64("max_load", rows.iter().map(|row| row.0))
         .f64("approach_m", rows.iter().map(|row| row.1))
         .i64("asperity_id", rows.iter().map(|row| row.2.asperity as i64))
-        .text("state", rows.iter().map(|row| word(row.2.status)))
+        .text("state", rows.iter().map(|row| SpotStatus::from(row.2.status).word()))
         .f64("contact_radius_m", rows.iter().map(|row| row.2.radius_m))
         .i64("covered_by", rows.iter().map(|row| covered(row.2.status).map(|(by, _)| by as i64)))
         .f64("release_m", rows.iter().map(|row| covered(row.2.status).map(|(_, release_m)| release_m)))
@@ -167,16 +168,6 @@ fn turning(of: Identity<'_>, cycle: &Cycle<State>, problem: &Problem, loads: &[f
         .i64("merged_into", rows.iter().map(|row| if let Status::Merged { into } = row.2.status { Some(into as i64) } else { None }))
         .i64("merged_count", rows.iter().map(|row| row.3 as i64))
         .build()?)
-}
-
-/// State of an asperity in the tables.
-fn word(status: Status) -> &'static str {
-    match status {
-        Status::Contact => "contact",
-        Status::Covered { .. } => "covered",
-        Status::Merged { .. } => "merged",
-        Status::Free => "free",
-    }
 }
 
 fn merged(of: Identity<'_>, cycle: &Cycle<State>) -> Result<Frame, StageError> {

@@ -7,7 +7,6 @@ use crate::asperities::solve::newton::Damping;
 use crate::asperities::solve::relaxation::{Relaxing, relax};
 use crate::asperities::solve::residual::NotConverged;
 use crate::cycle::Effort;
-use crate::event_kind::EventKind;
 
 impl LocalProblem {
     /// Relaxes at the present mean penetration ([`crate::asperities::solve::relaxation`]); the transitions on the way are returned.
@@ -40,7 +39,7 @@ impl Relaxing for Part<'_> {
     }
 
     fn take_out(&mut self, change: &Transition) {
-        if change.kind == EventKind::JumpOff {
+        if change.ends_contact() {
             self.patch.release(change.asperity);
         } else {
             self.patch.remove(change.asperity);
