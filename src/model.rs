@@ -3,4 +3,5 @@
 mod case;
 
 pub use crate::physics::model::*;
+pub use crate::physics::theory::regime::{BRIDGED, FLATTENED, LARGE_AREA, Regime, SEPARATE};
 pub use case::{CaseParams, CycleParams, ElementParams, ModelParams, SurfaceParams};

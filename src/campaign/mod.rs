@@ -64,8 +64,9 @@ impl Stage {
     /// Version of the stage in its keys. It is raised by hand if the stage writes something else for the same parameters.
     fn version(self) -> u32 {
         match self {
-            Self::Generate | Self::Extract => 2,
-            Self::Cycle => 17,
+            Self::Generate => 2,
+            Self::Extract => 3,
+            Self::Cycle => 18,
             Self::Aggregate => 11,
             Self::Report => 15,
         }

@@ -7,6 +7,7 @@ mod avalanches;
 mod comparison;
 mod curves;
 mod cycles;
+mod estimates;
 mod methods;
 mod parameter;
 mod parameters;
@@ -19,6 +20,7 @@ pub use avalanches::{AVALANCHES, EVENT_KINDS, event_kind};
 pub use comparison::COMPARISON;
 pub use curves::{CURVES, PANELS};
 pub use cycles::CYCLES;
+pub use estimates::{DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES};
 pub use methods::METHODS;
 pub use parameter::{CaseFacts, Parameter, ParameterValue};
 pub use parameters::{PARAMETERS, parameters_by_rank};
@@ -103,12 +105,14 @@ const ASPERITIES_ID: Column =
 /// Every table that the program writes.
 pub static TABLES: &[&Table] = &[
     &ASPERITIES,
+    &SURFACE_ESTIMATES,
     &STEPS,
     &CONTACTS,
     &TURNING,
     &MERGED,
     &EVENTS,
     &ADHESIONLESS,
+    &ESTIMATES,
     &REALIZATIONS,
     &CASES,
     &CURVES,

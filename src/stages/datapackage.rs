@@ -82,7 +82,7 @@ impl<'a> Ids<'a> {
             Some("cycles") if matches!(table.name, "turning" | "merged") => Some(&self.asperities),
             Some("cycles") if table.name == "adhesionless" => Some(&self.elements),
             Some("cycles") => Some(&self.cycles),
-            Some("asperities") => Some(&self.surfaces),
+            Some("asperities" | "estimates") => Some(&self.surfaces),
             _ => None,
         }
     }

@@ -1,7 +1,8 @@
-//! Stage extract: asperities of a surface.
+//! Stage extract: asperities of a surface, and its analytical estimates.
 
 use super::StageError;
 use super::done::Outcome;
+use super::estimates::{surface_estimates, surface_table};
 use super::surface::SurfaceStage;
 use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
 use crate::physics::surface::measured::find_measured;
@@ -31,7 +32,7 @@ impl SurfaceStage for Extract {
     }
 }
 
-/// Finds the asperities of a surface and writes their table.
+/// Finds the asperities of a surface and writes their table and that of its estimates.
 fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     let (header, heights) = read_surface(&campaign.surface_path(unit))?;
     let (found, edge) = match &header.measured {
@@ -56,7 +57,12 @@ fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErro
     if header.measured.is_some() {
         keys.push(("edge_count", edge.to_string()));
     }
-    Ok(Outcome::of(vec![parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?]))
+    let estimates = surface_estimates(campaign, unit, (&header, heights.view()), list.len())?;
+    let estimates = surface_table(unit, &header, &estimates)?;
+    Ok(Outcome::of(vec![
+        parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?,
+        parquet::write_table(&campaign.estimates_path(unit), &estimates, &keys[..1])?,
+    ]))
 }
 
 /// Table of the asperities of a surface.

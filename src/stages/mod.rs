@@ -12,6 +12,7 @@ mod cycle_input;
 mod datapackage;
 mod done;
 mod error;
+mod estimates;
 mod explorer;
 mod explorer_maps;
 mod extract;

@@ -1,7 +1,7 @@
 //! Verdict on each case before a run: regime, recommended method, grid, memory and time.
 
 use super::cost::{Cost, LONG, of_asperities, of_elements};
-use super::cycle::{Lattice, checked, checked_lattice, enough_memory};
+use super::cycle::{Lattice, Square, checked, checked_lattice, enough_memory};
 use super::outside::{Outside, interval};
 use super::previews::{Known, Preview};
 use super::surface::{Scale, target};
@@ -129,7 +129,7 @@ fn cost(params: &CaseParams, known: Option<&Known>, ratio: Option<f64>) -> Optio
     let surface = &params.surface;
     if params.by_elements() {
         let (lattice, rms_height_m) = match known {
-            Some(known) => (Lattice::of_measured(params, &known.header), known.header.rms_height_m),
+            Some(known) => (Lattice::of_measured(params, Square::of(params, &known.header)), known.header.rms_height_m),
             None if surface.is_measured() => return None,
             None => (Lattice::of_generated(params), surface.rms_height_m),
         };

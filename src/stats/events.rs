@@ -7,9 +7,6 @@ use crate::schema::{EVENT_KINDS, EVENTS, EventGroup, EventKind, event_kind};
 use crate::store::parquet::read_table;
 use crate::store::{Frame, FrameError};
 
-/// Number of the asperity of an event of boundary elements, which has none.
-const NO_ASPERITY: i64 = -1;
-
 /// One event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Event {
@@ -18,7 +15,6 @@ pub(super) struct Event {
     /// Nothing while loading.
     pub(super) max_load: Option<f64>,
     pub(super) kind: EventKind,
-    pub(super) asperity_id: i64,
     pub(super) approach_m: f64,
     pub(super) avalanche_id: i64,
     pub(super) load_before_n: f64,
@@ -81,15 +77,6 @@ impl Events {
         self.0.iter().filter(move |event| if event.loading { event.step <= turning_step } else { back(event) })
     }
 
-    /// The asperities that came into contact in that loop, each once, ascending.
-    pub(super) fn touched(&self, turning_step: i64, max_load: f64) -> Vec<i64> {
-        let jumps = self.of_loop(turning_step, max_load).filter(|event| event.kind == EventKind::JumpIn);
-        let mut touched: Vec<i64> = jumps.map(|event| event.asperity_id).collect();
-        touched.sort_unstable();
-        touched.dedup();
-        touched
-    }
-
     /// Energies dissipated up to a load reversal, whose step is given, and while unloading from it.
     ///
     /// One loading path serves every load reversal: events beyond the step of this one are not part of its
@@ -115,7 +102,7 @@ impl Events {
 
 /// The events of a table, or why a row is none.
 fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
-    let (steps, avalanches, asperities) = (frame.i64("step")?, frame.i64("avalanche_id")?, frame.i64_or_null("asperity_id")?);
+    let (steps, avalanches) = (frame.i64("step")?, frame.i64("avalanche_id")?);
     let (branches, kinds, max_loads) = (frame.text("branch")?, frame.text("kind")?, frame.f64_or_null("max_load")?);
     let (approaches, energies) = (frame.f64("approach_m")?, frame.f64("energy_lost_j")?);
     let (loads_before, loads_after) = (frame.f64("load_before_n")?, frame.f64("load_after_n")?);
@@ -132,7 +119,6 @@ fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
             loading,
             max_load,
             kind: event_kind(word).ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))?,
-            asperity_id: asperities[row].unwrap_or(NO_ASPERITY),
             approach_m: approaches[row],
             avalanche_id: avalanches[row],
             load_before_n: loads_before[row],

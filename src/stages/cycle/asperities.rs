@@ -59,6 +59,9 @@ pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
         load_unit_n,
         area_m2,
         rms_height_m,
+        summits,
+        adhesionless: Vec::new(),
+        per_wavelength: None,
     })
 }
 

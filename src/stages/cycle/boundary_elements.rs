@@ -2,19 +2,20 @@
 
 use super::super::StageError;
 use super::super::identity::Identity;
-use super::elements_setup::setup;
+use super::elements_setup::{Setup, setup};
 use super::{Computed, CycleTask, serialized};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::physics::boundary_elements::cycle::Turning;
 use crate::physics::cycle::{Cycle, Map, Method};
 use crate::physics::elements::{Elements, FreeStep};
+use crate::physics::theory::approximate_jkr::CurvePoint;
 use crate::schema;
 use crate::store::{ContactMap, Frame, MapsHeader, read_halfway, write_maps, write_state};
 use std::path::{Path, PathBuf};
 
 pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
     let (campaign, unit) = (task.campaign, task.unit);
-    let method = setup(campaign, unit)?;
+    let Setup { method, summits, per_wavelength } = setup(campaign, unit)?;
     let cycle = task.follow(&method)?;
     let (size, units, dir) = (method.size(), method.units, campaign.cycle_dir(unit));
     let contact_gap_m = method.problem.law.contact_gap() * units.spacing_m();
@@ -37,6 +38,9 @@ pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
         load_unit_n: units.modulus_pa * length_m * length_m,
         area_m2: length_m * length_m,
         rms_height_m: units.rms_height_m,
+        summits,
+        adhesionless: free.iter().map(|step| curve_point(step, units.modulus_pa)).collect(),
+        per_wavelength: Some(per_wavelength),
     })
 }
 
@@ -51,6 +55,11 @@ fn adhesionless(of: Identity<'_>, steps: &[FreeStep]) -> Result<Frame, StageErro
         .bool("converged", steps.iter().map(|step| step.is_converged))
         .count("transform_count", steps.iter().map(|step| step.transforms as usize))
         .build()?)
+}
+
+/// Point of the adhesionless curve, with E* \[Pa\].
+fn curve_point(step: &FreeStep, modulus_pa: f64) -> CurvePoint {
+    CurvePoint { penetration_m: step.approach_m, load_m2: step.load_n / modulus_pa, area_m2: step.area_m2 }
 }
 
 /// Maps as they are stored, with the load at their reversal.
@@ -89,7 +98,7 @@ fn turning_path(dir: &Path) -> PathBuf {
 /// The files of the cycle and of its surface must be complete, and contain that load.
 pub(super) fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Result<Cycle<()>, StageError> {
     let params = &campaign.cases[unit.case].case.params;
-    let method = setup(campaign, unit)?;
+    let Setup { method, .. } = setup(campaign, unit)?;
     let path = turning_path(&campaign.cycle_dir(unit));
     let states: Option<Vec<Turning>> = read_halfway(&path, &unit.key).and_then(|bytes| postcard::from_bytes(&bytes).ok());
     let reversal = params.cycle.max_load.iter().position(|load| *load == max_load);

@@ -3,7 +3,7 @@
 use super::super::StageError;
 use super::super::extract::read_summits;
 use super::super::surface::scale;
-use super::lattice::{checked_lattice, extent};
+use super::lattice::{Lattice, Square, checked_lattice};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::{Material, Nucleation, Opening};
 use crate::physics::PhysicsError;
@@ -15,17 +15,25 @@ use crate::spec::CaseParams;
 use crate::store::hdf5::read_surface;
 
 /// The surface of a cycle on the grid of its case.
-pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Elements, StageError> {
+pub(super) struct Setup {
+    pub(super) method: Elements,
+    pub(super) summits: Vec<Summit>,
+    /// Grid points per cut-off wavelength.
+    pub(super) per_wavelength: f64,
+}
+
+/// Reads the surface of a cycle and sets the method up.
+pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Setup, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
-    let list = read_summits(&campaign.asperities_path(surface))?;
-    let (length_m, wavelengths) = extent(&header, params);
+    let summits = read_summits(&campaign.asperities_path(surface))?;
+    let (length_m, wavelengths) = Square::of(params, &header).extent();
     let rms_height_m = scale(campaign, surface)?.rms_height_m;
     let lattice = checked_lattice(params, &header, rms_height_m)?;
     let attraction = match lattice.range_m {
         Some(range_m) => Attraction::Range { range_m },
-        None => bonded(params, &list)?,
+        None => bonded(params, &summits)?,
     };
     let (elements, shortest_wavelength_m) = (&params.boundary_elements, length_m / wavelengths);
     let options = Options {
@@ -40,7 +48,9 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit) -> Result<Elements, S
     let (length_m, is_periodic) = (header.length_m, header.periodic);
     let map = HeightMap { heights_m: heights.view(), length_m, is_periodic, shortest_wavelength_m, rms_height_m };
     let method = Elements::new(&map, &params.material, &params.cycle.max_load, &options)?;
-    Ok(method.with_summits(list.iter().map(|summit| [summit.x_m, summit.y_m])))
+    let method = method.with_summits(summits.iter().map(|summit| [summit.x_m, summit.y_m]));
+    let by_spectrum = if params.surface.is_measured() { lattice } else { Lattice::of_generated(params) };
+    Ok(Setup { method, summits, per_wavelength: by_spectrum.per_wavelength })
 }
 
 /// The JKR limit of a case on a surface with these asperities.

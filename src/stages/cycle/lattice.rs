@@ -1,13 +1,12 @@
 //! Grid of boundary elements, and its memory.
 
 use super::super::StageError;
-use crate::campaign::{Campaign, CycleUnit};
 use crate::model::Attraction;
 use crate::physics::PhysicsError;
 use crate::physics::elements::memory_bytes;
 use crate::physics::memory;
 use crate::spec::CaseParams;
-use crate::store::hdf5::{SurfaceHeader, read_header};
+use crate::store::hdf5::SurfaceHeader;
 
 /// Grid of a case on one surface.
 #[derive(Debug, Clone, Copy)]
@@ -22,17 +21,30 @@ pub(in crate::stages) struct Lattice {
     pub(in crate::stages) is_mirrored: bool,
 }
 
-/// Grid of a cycle; nothing for the asperity model.
-pub(in crate::stages) fn lattice(campaign: &Campaign, unit: &CycleUnit) -> Result<Option<Lattice>, StageError> {
-    let params = &campaign.cases[unit.case].case.params;
-    if !params.by_elements() {
-        return Ok(None);
+/// Square of a surface with its shortest wavelength.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::stages) struct Square {
+    /// Side \[m\].
+    pub(in crate::stages) length_m: f64,
+    /// Shortest wavelength; of a measured surface the cut-off \[m\].
+    pub(in crate::stages) shortest_wavelength_m: f64,
+    /// True if the surface continues periodically.
+    pub(in crate::stages) is_periodic: bool,
+}
+
+impl Square {
+    /// Square of a surface of a case with this header.
+    pub(in crate::stages) fn of(params: &CaseParams, header: &SurfaceHeader) -> Self {
+        let of_spectrum = || header.length_m / f64::from(params.surface.magnification);
+        let shortest_wavelength_m = header.measured.as_ref().map_or_else(of_spectrum, |measured| measured.shortest_wavelength_m);
+        Self { length_m: header.length_m, shortest_wavelength_m, is_periodic: header.periodic }
     }
-    Ok(Some(if params.surface.is_measured() {
-        Lattice::of_measured(params, &read_header(&campaign.surface_path(&campaign.surfaces[unit.surface]))?)
-    } else {
-        Lattice::of_generated(params)
-    }))
+
+    /// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
+    pub(super) fn extent(self) -> (f64, f64) {
+        let length_m = if self.is_periodic { self.length_m } else { 2.0 * self.length_m };
+        (length_m, length_m / self.shortest_wavelength_m)
+    }
 }
 
 impl Lattice {
@@ -55,14 +67,14 @@ impl Lattice {
     }
 
     /// The grid of a case on a measured surface.
-    pub(in crate::stages) fn of_measured(params: &CaseParams, header: &SurfaceHeader) -> Self {
-        Self::of(params, extent(header, params))
+    pub(in crate::stages) fn of_measured(params: &CaseParams, square: Square) -> Self {
+        Self::of(params, square.extent())
     }
 }
 
 /// The grid of a case on a surface with this header and rms height \[m\], checked.
 pub(in crate::stages) fn checked_lattice(params: &CaseParams, header: &SurfaceHeader, rms_height_m: f64) -> Result<Lattice, StageError> {
-    let (length_m, wavelengths) = extent(header, params);
+    let (length_m, wavelengths) = Square::of(params, header).extent();
     let (elements, loads) = (&params.boundary_elements, params.cycle.max_load.len());
     if let Some((problem, help)) = elements.refusal(length_m, wavelengths, params.material.adhesion_length_m()) {
         return Err(PhysicsError::Surface { problem, help }.into());
@@ -78,16 +90,6 @@ pub(in crate::stages) fn checked_lattice(params: &CaseParams, header: &SurfaceHe
         return Err(PhysicsError::Surface { problem, help: "use an even number of boundary_elements.points" }.into());
     }
     Ok(lattice)
-}
-
-/// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
-pub(super) fn extent(header: &SurfaceHeader, params: &CaseParams) -> (f64, f64) {
-    let shortest = match &header.measured {
-        Some(measured) => measured.shortest_wavelength_m,
-        None => header.length_m / f64::from(params.surface.magnification),
-    };
-    let length_m = if header.periodic { header.length_m } else { 2.0 * header.length_m };
-    (length_m, length_m / shortest)
 }
 
 /// Refuses a grid for which there is not enough memory.

@@ -4,13 +4,14 @@ mod asperities;
 mod boundary_elements;
 mod constants;
 mod elements_setup;
+mod estimates;
 mod lattice;
 mod not_reached;
 mod tables;
 
 pub(super) use asperities::checked;
 pub(super) use constants::CONSTANTS;
-pub(super) use lattice::{Lattice, checked_lattice, enough_memory, lattice};
+pub(super) use lattice::{Lattice, Square, checked_lattice, enough_memory};
 
 use super::done::Outcome;
 use super::failure::in_the_way;
@@ -21,6 +22,8 @@ use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
 use crate::physics::LoopPosition;
 use crate::physics::cycle::{Cycle, Method};
 use crate::physics::half_space::Effort;
+use crate::physics::surface::summits::Summit;
+use crate::physics::theory::approximate_jkr::CurvePoint;
 use crate::spec::CaseParams;
 use crate::store::commit::Written;
 use crate::store::{Frame, parquet, read_halfway, write_halfway};
@@ -113,7 +116,7 @@ struct CycleTask<'a> {
     watch: &'a dyn Watch,
 }
 
-/// Result of a method: a cycle, further files of this method, and the units of the dimensionless columns.
+/// Result of a method: a cycle, further files of this method, the units of the dimensionless columns, and the input of the estimates.
 struct Computed {
     method: &'static str,
     /// Name and number of the unknowns.
@@ -124,6 +127,11 @@ struct Computed {
     load_unit_n: f64,
     area_m2: f64,
     rms_height_m: f64,
+    summits: Vec<Summit>,
+    /// Curve of the same surface without adhesion; empty for asperities.
+    adhesionless: Vec<CurvePoint>,
+    /// Grid points per cut-off wavelength; nothing for asperities.
+    per_wavelength: Option<f64>,
 }
 
 impl<'a> CycleTask<'a> {
@@ -151,7 +159,7 @@ fn compute(task: CycleTask<'_>) -> Result<Outcome, StageError> {
     let mut computed = if by_elements { boundary_elements::run(&task)? } else { asperities::run(&task)? };
     let max_loads = &task.params().cycle.max_load;
     let of_all = tables::Tables { of: Identity::of(campaign, unit), computed: &computed, max_loads };
-    let mut files = write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?])?;
+    let mut files = write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?, estimates::table(task, &computed)?])?;
     files.extend(write_tables(campaign, unit, &computed.tables)?);
     files.append(&mut computed.files);
     let unreached = std::mem::take(&mut computed.cycle.unreached);
