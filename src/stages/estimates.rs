@@ -1,9 +1,12 @@
-//! Table of the analytical estimates of a surface, and those of a failed cycle.
+//! Asperities and analytical estimates of a surface, their table, and the estimates of a failed cycle.
 
 use super::StageError;
 use super::surface::{spectrum, target};
 use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
-use crate::physics::PhysicsError;
+use crate::model::Material;
+use crate::physics::jkr::Asperity;
+use crate::physics::surface::measured::find_measured;
+use crate::physics::surface::summits::{Summit, Summits, find_summits};
 use crate::physics::surface::synthesis::realization_seed;
 use crate::physics::surface::texture::Texture;
 use crate::physics::theory::estimates::{Ratios, Roughness, SurfaceEstimates};
@@ -19,19 +22,54 @@ pub(super) fn finite(value: &f64) -> bool {
     value.is_finite()
 }
 
-/// Estimates of a surface with its heights \[m\] and the number of its asperities.
-pub(super) fn surface_estimates(
-    campaign: &Campaign,
-    unit: &SurfaceUnit,
-    (header, heights): (&SurfaceHeader, ArrayView2<'_, f64>),
-    summit_count: usize,
-) -> Result<SurfaceEstimates, PhysicsError> {
-    let SurfaceHeader { length_m, periodic, rms_height_m, rms_slope, rms_curvature_1_m, .. } = *header;
-    let roughness = Roughness { rms_height_m, rms_slope, rms_curvature_1_m };
-    if let Some(measured) = &header.measured {
-        return SurfaceEstimates::of_measured(heights, (length_m, periodic), measured.shortest_wavelength_m, roughness, summit_count);
+/// Asperities of a surface, with its estimates.
+pub struct Examined {
+    /// Asperities.
+    pub(super) found: Summits,
+    /// Asperities too close to an edge, which are excluded.
+    pub edge_count: usize,
+    /// Estimates.
+    pub estimates: SurfaceEstimates,
+}
+
+impl Examined {
+    /// Of the heights \[m\] of a measured surface.
+    ///
+    /// # Errors
+    /// Too few points per shortest wavelength; too little memory.
+    pub fn of_measured(header: &SurfaceHeader, heights: ArrayView2<'_, f64>) -> Result<Self, StageError> {
+        let (length_m, periodic) = (header.length_m, header.periodic);
+        let cut_off_m = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m);
+        let points = cut_off_m * heights.nrows() as f64 / length_m;
+        let (found, edge_count) = find_measured(heights, length_m, (periodic, points))?;
+        let estimates = SurfaceEstimates::of_measured(heights, (length_m, periodic), cut_off_m, roughness(header), found.list.len())?;
+        Ok(Self { found, edge_count, estimates })
     }
-    Ok(SurfaceEstimates::of_generated(&spectrum(&unit.params), &seed(campaign, unit), roughness, summit_count))
+
+    /// Of the heights \[m\] of a generated surface.
+    pub(super) fn of_generated(
+        campaign: &Campaign,
+        unit: &SurfaceUnit,
+        header: &SurfaceHeader,
+        heights: ArrayView2<'_, f64>,
+    ) -> Result<Self, StageError> {
+        let found = find_summits(heights, header.length_m, f64::from(unit.params.points_per_shortest_wavelength))?;
+        let (spectrum, seed) = (spectrum(&unit.params), seed(campaign, unit));
+        let estimates = SurfaceEstimates::of_generated(&spectrum, &seed, roughness(header), found.list.len());
+        Ok(Self { found, edge_count: 0, estimates })
+    }
+
+    /// Tabor parameter of the sharpest asperity; nothing without asperities.
+    #[must_use]
+    pub fn least_tabor(&self, material: &Material) -> Option<f64> {
+        let radius_m = self.found.list.iter().map(Summit::radius_m).reduce(f64::min)?;
+        Some(Asperity::new(radius_m, material).ok()?.tabor(material.interaction_range_m))
+    }
+}
+
+fn roughness(header: &SurfaceHeader) -> Roughness {
+    let SurfaceHeader { rms_height_m, rms_slope, rms_curvature_1_m, .. } = *header;
+    Roughness { rms_height_m, rms_slope, rms_curvature_1_m }
 }
 
 fn seed(campaign: &Campaign, unit: &SurfaceUnit) -> [u8; 32] {

@@ -2,11 +2,10 @@
 
 use super::StageError;
 use super::done::Outcome;
-use super::estimates::{surface_estimates, surface_table};
+use super::estimates::{Examined, surface_table};
 use super::surface::SurfaceStage;
 use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
-use crate::physics::surface::measured::find_measured;
-use crate::physics::surface::summits::{Summit, find_summits};
+use crate::physics::surface::summits::Summit;
 use crate::schema;
 use crate::store::hdf5::read_surface;
 use crate::store::{Frame, FrameError, parquet};
@@ -35,29 +34,22 @@ impl SurfaceStage for Extract {
 /// Finds the asperities of a surface and writes their table and that of its estimates.
 fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     let (header, heights) = read_surface(&campaign.surface_path(unit))?;
-    let (found, edge) = match &header.measured {
-        Some(measured) => {
-            let points = measured.shortest_wavelength_m * heights.nrows() as f64 / header.length_m;
-            find_measured(heights.view(), header.length_m, (header.periodic, points))?
-        }
-        None => (find_summits(heights.view(), header.length_m, f64::from(unit.params.points_per_shortest_wavelength))?, 0),
+    let Examined { found, edge_count, estimates } = match &header.measured {
+        Some(_) => Examined::of_measured(&header, heights.view())?,
+        None => Examined::of_generated(campaign, unit, &header, heights.view())?,
     };
-    let list = &found.list;
-    let frame = table(unit, list)?;
-    let area = header.length_m * header.length_m;
-    let moments = header.moments();
+    let frame = table(unit, &found.list)?;
     let mut keys = vec![
         ("key", unit.asperities_key.clone()),
         // Nayak's density of the realised moments, for comparison with the density found.
-        ("nayak_density_1_m2", moments.summit_density_1_m2().to_string()),
-        ("summit_density_1_m2", (list.len() as f64 / area).to_string()),
+        ("nayak_density_1_m2", estimates.roughness.moments().summit_density_1_m2().to_string()),
+        ("summit_density_1_m2", estimates.summit_density_1_m2().to_string()),
         ("rejected_count", found.rejected.to_string()),
         ("unrefined_count", found.unrefined.to_string()),
     ];
     if header.measured.is_some() {
-        keys.push(("edge_count", edge.to_string()));
+        keys.push(("edge_count", edge_count.to_string()));
     }
-    let estimates = surface_estimates(campaign, unit, (&header, heights.view()), list.len())?;
     let estimates = surface_table(unit, &header, &estimates)?;
     Ok(Outcome::of(vec![
         parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?,

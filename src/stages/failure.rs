@@ -91,7 +91,8 @@ fn record(campaign: &Campaign, unit: &CycleUnit, stage: Stage, error: &StageErro
     let again = format!("hysteron retry {} {}", shell_path(&campaign.dir), unit.id);
     let mut record = json!({ "key": unit.key, "stage": stage.word(), "error": error.to_string(), "again": again });
     // As text, which is read without rounding.
-    record["estimates"] = of_failed(campaign, unit).into_iter().map(|(name, value)| (name.to_owned(), Value::from(value.to_string()))).collect();
+    record["estimates"] =
+        of_failed(campaign, unit).into_iter().map(|(name, value)| (name.to_owned(), Value::from(value.to_string()))).collect();
     if let StageError::InTheWay { path, .. } = error {
         let place: &Path = path.strip_prefix(&campaign.dir).unwrap_or(path);
         record["in_the_way"] = place.to_string_lossy().into();

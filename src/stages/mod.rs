@@ -42,6 +42,7 @@ pub use compare::{Comparison, compare};
 pub use cost::Cost;
 pub use cycle::unload_again;
 pub use error::StageError;
+pub use estimates::Examined;
 pub use foreseen::{ARTEFACTS, Foreseen, Outside, foreseen};
 pub use measure::{Imported, measure};
 pub use pipeline::{prepare, run};
@@ -49,8 +50,12 @@ pub use sampling::sampled;
 pub use task::{Tally, Task, Watch};
 pub use verdict::{Verdict, chosen_method, in_words};
 
-/// Numerical choices and limits of cycles and of the report that are made here.
-pub const CONSTANTS: [Constants; 3] = [
+/// Numerical choices and limits of the physics, and those of cycles and of the report that are made here.
+pub fn constants() -> impl Iterator<Item = Constants> {
+    crate::physics::CONSTANTS.into_iter().chain(CONSTANTS)
+}
+
+const CONSTANTS: [Constants; 3] = [
     Constants { subject: "Cycles", module: "stages::cycle", rows: cycle::CONSTANTS },
     Constants { subject: "Loop explorer", module: "stages::explorer", rows: explorer::CONSTANTS },
     Constants { subject: "Estimates before a run", module: "stages::cost", rows: cost::CONSTANTS },

@@ -93,9 +93,8 @@ fn energies(params: &CaseParams, known: Option<&Known>) -> Option<(Flattening, f
     if let Some(asked) = target(params) {
         return Some((flattening(&asked, modulus), asked.moments().rms_slope()));
     }
-    let (known, unit) = known.and_then(|known| Some((known, known.found()?.unit)))?;
-    let energy = Flattening { whole_j_m2: modulus * unit.whole_j_m2, octave_j_m2: modulus * unit.octave_j_m2 };
-    Some((energy, known.header.rms_slope))
+    let estimates = known?.found()?.estimates;
+    Some((estimates.flattening.energies(modulus), estimates.roughness.rms_slope))
 }
 
 /// The method of `method = "auto"` for a case with a measured surface.
@@ -134,7 +133,7 @@ fn cost(params: &CaseParams, known: Option<&Known>, ratio: Option<f64>) -> Optio
             None => (Lattice::of_generated(params), surface.rms_height_m),
         };
         let cost = of_elements(params, lattice.points, ratio, (lattice.range_m, rms_height_m));
-        let shortest = known.and_then(Known::found).map_or(1.0, |found| found.shortest);
+        let shortest = known.and_then(Known::found).map_or(1.0, |found| found.estimates.per_shortest_wavelength(1.0));
         return Some(Cost { per_wavelength: shortest * lattice.per_wavelength, is_mirrored: lattice.is_mirrored, ..cost });
     }
     let (points, wavelengths) = match known {
@@ -163,7 +162,7 @@ fn error(params: &CaseParams, preview: Option<&Preview>) -> Option<String> {
     let details = known.details.as_ref();
     let of_asperities = || {
         let scale = Scale { length_m: known.header.length_m, rms_height_m: known.header.rms_height_m };
-        details?.as_ref().ok().and_then(|details| checked(params, scale, &details.summits).err())
+        details?.as_ref().ok().and_then(|details| checked(params, scale, &details.found.list).err())
     };
     let of_elements = || checked_lattice(params, &known.header, known.header.rms_height_m).err();
     let refused = || if params.by_elements() { of_elements() } else { of_asperities() };

@@ -204,12 +204,8 @@ pub struct DengKesari {
 
 impl DengKesari {
     /// Equations of the four values.
-    pub const ERRATA: [Slips; 4] = [
-        Slips::NONE,
-        Slips { a2: true, ..Slips::NONE },
-        Slips { a3: true, ..Slips::NONE },
-        Slips { a2: true, a3: true, ..Slips::NONE },
-    ];
+    pub const ERRATA: [Slips; 4] =
+        [Slips::NONE, Slips { a2: true, ..Slips::NONE }, Slips { a3: true, ..Slips::NONE }, Slips { a2: true, a3: true, ..Slips::NONE }];
 
     fn of(moments: &Moments, material: &Material, area_m2: f64) -> Result<Self, PhysicsError> {
         let mut nominal_j = [None; 4];

@@ -159,7 +159,8 @@ fn compute(task: CycleTask<'_>) -> Result<Outcome, StageError> {
     let mut computed = if by_elements { boundary_elements::run(&task)? } else { asperities::run(&task)? };
     let max_loads = &task.params().cycle.max_load;
     let of_all = tables::Tables { of: Identity::of(campaign, unit), computed: &computed, max_loads };
-    let mut files = write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?, estimates::table(task, &computed)?])?;
+    let mut files =
+        write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?, estimates::table(task, &computed)?])?;
     files.extend(write_tables(campaign, unit, &computed.tables)?);
     files.append(&mut computed.files);
     let unreached = std::mem::take(&mut computed.cycle.unreached);
