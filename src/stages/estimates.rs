@@ -1,21 +1,27 @@
 //! Asperities and analytical estimates of a surface, their table, and the estimates of a failed cycle.
 
 use super::StageError;
-use super::surface::{spectrum, target};
 use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
 use crate::model::Material;
 use crate::physics::jkr::Asperity;
 use crate::physics::surface::measured::find_measured;
+use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::surface::summits::{Summit, Summits, find_summits};
 use crate::physics::surface::synthesis::realization_seed;
 use crate::physics::surface::texture::Texture;
 use crate::physics::theory::estimates::{Ratios, Roughness, SurfaceEstimates};
 use crate::physics::theory::flattening::RelativeFlattening;
 use crate::schema::SURFACE_ESTIMATES;
+use crate::spec::CaseParams;
 use crate::store::hdf5::SurfaceHeader;
 use crate::store::{Frame, FrameError, parquet};
 use ndarray::ArrayView2;
 use std::path::Path;
+
+/// Target spectrum of a case; a measured surface has none.
+pub(super) fn target(params: &CaseParams) -> Option<Spectrum> {
+    (!params.surface.is_measured()).then(|| Spectrum::from(&params.surface))
+}
 
 /// True for a number that a table may hold.
 pub(super) fn finite(value: &f64) -> bool {
@@ -54,7 +60,7 @@ impl Examined {
         heights: ArrayView2<'_, f64>,
     ) -> Result<Self, StageError> {
         let found = find_summits(heights, header.length_m, f64::from(unit.params.points_per_shortest_wavelength))?;
-        let (spectrum, seed) = (spectrum(&unit.params), seed(campaign, unit));
+        let (spectrum, seed) = (Spectrum::from(&unit.params), seed(campaign, unit));
         let estimates = SurfaceEstimates::of_generated(&spectrum, &seed, roughness(header), found.list.len());
         Ok(Self { found, edge_count: 0, estimates })
     }

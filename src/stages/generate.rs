@@ -3,13 +3,14 @@
 use super::StageError;
 use super::done::Outcome;
 use super::measure::{Imported, measure};
-use super::surface::{SurfaceStage, spectrum};
+use super::surface::SurfaceStage;
 use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
 use crate::paths::whole;
 use crate::physics::PhysicsError;
 use crate::physics::memory;
+use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::surface::synthesis::{realization_seed, synthesis_bytes, synthesize};
 use crate::spec::SurfaceParams;
 use crate::store::hdf5::{Generated, SurfaceHeader, write_surface};
@@ -64,7 +65,7 @@ fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErr
         return import(campaign, unit);
     }
     let seed = realization_seed(campaign.spec.seed, u64::from(unit.realization));
-    let (spectrum, grid) = (spectrum(params), params.grid() as usize);
+    let (spectrum, grid) = (Spectrum::from(params), params.grid() as usize);
     memory::check(synthesis_bytes(&spectrum, grid))?;
     let surface = synthesize(&spectrum, &seed, grid);
     // One that no file may hold is the failure of this surface.

@@ -1,7 +1,7 @@
 //! Figures of a single cycle for the report.
 
 use super::StageError;
-use super::surface::{scale, spectrum};
+use super::surface::scale;
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Closer, ElementsLoop, closer, elements_loop};
 use crate::model::{Boundary, Choice, Method, Normalization};
@@ -194,11 +194,11 @@ fn asked_factor(params: &SurfaceParams, variance_m2: f64) -> Option<f64> {
 
 /// `C qL²` of Eq 10 at qL \[m²\].
 fn eq10_unit(params: &SurfaceParams) -> f64 {
-    let of = spectrum(params);
+    let of = Spectrum::from(params);
     of.prefactor() * of.lowest_wavenumber().powi(2)
 }
 
 /// The sum of Eq 10 over the lattice of modes \[m²\].
 fn eq10_variance(params: &SurfaceParams) -> f64 {
-    Spectrum { normalization: Normalization::Spectrum, ..spectrum(params) }.lattice_moments().m0_m2
+    Spectrum { normalization: Normalization::Spectrum, ..Spectrum::from(params) }.lattice_moments().m0_m2
 }

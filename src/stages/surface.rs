@@ -5,22 +5,10 @@ use super::failure::in_the_way;
 use super::runner::{Context, Tasks};
 use super::{StageError, failure};
 use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
-use crate::physics::surface::spectrum::Spectrum;
-use crate::spec::{CaseParams, SurfaceParams};
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::marker::PhantomData;
-
-/// Target spectrum of a generated surface.
-pub(super) fn spectrum(params: &SurfaceParams) -> Spectrum {
-    Spectrum::from(params)
-}
-
-/// Target spectrum of a case; a measured surface has none.
-pub(super) fn target(params: &CaseParams) -> Option<Spectrum> {
-    (!params.surface.is_measured()).then(|| spectrum(&params.surface))
-}
 
 /// Units of the lengths and heights of a surface.
 #[derive(Debug, Clone, Copy)]

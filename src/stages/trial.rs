@@ -1,8 +1,9 @@
 //! Errors of the asperity model on generated surfaces before a run: the first surface of a case is made, and its asperities are checked.
 
 use super::cycle::checked;
-use super::surface::{Scale, spectrum};
+use super::surface::Scale;
 use crate::campaign::{Campaign, CaseUnit, CycleUnit};
+use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::surface::summits::{Summit, find_summits};
 use crate::physics::surface::synthesis::{realization_seed, synthesize};
 use std::cell::RefCell;
@@ -33,7 +34,7 @@ impl Trial {
         let scale = Scale { length_m: params.surface.length_m, rms_height_m: params.surface.rms_height_m };
         let summits = known.entry(cycle.surface).or_insert_with(|| {
             let seed = realization_seed(campaign.spec.seed, u64::from(surface.realization));
-            let heights_m = synthesize(&spectrum(&surface.params), &seed, grid).heights_m;
+            let heights_m = synthesize(&Spectrum::from(&surface.params), &seed, grid).heights_m;
             let per_wavelength = f64::from(surface.params.points_per_shortest_wavelength);
             find_summits(heights_m.view(), surface.params.length_m, per_wavelength).map(|found| found.list).unwrap_or_default()
         });

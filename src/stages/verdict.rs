@@ -2,9 +2,10 @@
 
 use super::cost::{Cost, LONG, of_asperities, of_elements};
 use super::cycle::{Lattice, Square, checked, checked_lattice, enough_memory};
+use super::estimates::target;
 use super::outside::{Outside, interval};
 use super::previews::{Known, Preview};
-use super::surface::{Scale, target};
+use super::surface::Scale;
 use super::trial::Trial;
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, Standing};
 use crate::model::Method;

@@ -1,9 +1,8 @@
 //! Table of the analytical estimates of a cycle.
 
 use super::super::StageError;
-use super::super::estimates::{finite, read_surface_estimates};
+use super::super::estimates::{finite, read_surface_estimates, target};
 use super::super::identity::Identity;
-use super::super::surface::target;
 use super::{Computed, CycleTask};
 use crate::physics::EventKind;
 use crate::physics::cycle::soundness::LoopEnergy;
