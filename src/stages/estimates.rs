@@ -155,5 +155,5 @@ pub(super) fn of_failed(campaign: &Campaign, unit: &CycleUnit) -> Vec<(&'static 
         ("persson_tosatti_realised", ratios.persson_tosatti_realised),
         ("sticky_line", ratios.sticky_line),
     ];
-    columns.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
+    columns.into_iter().filter_map(|(name, value)| Some((name, value.filter(finite)?))).collect()
 }

@@ -78,7 +78,8 @@ pub(super) fn report(
     Ok(())
 }
 
-/// Records that a cycle failed, at which stage and why, with the estimates that need no result; of a folder in the way also where it is, since without it nothing has failed.
+/// Records that a cycle failed, at which stage and why, with the estimates of its surface and material. Of a folder in the way it also records the place, since
+/// without the folder nothing has failed.
 fn record(campaign: &Campaign, unit: &CycleUnit, stage: Stage, error: &StageError) -> Result<(), StageError> {
     in_the_way(campaign, &unit.cycle()).or_else(|why| match &why {
         StageError::InTheWay { path, .. } if *path != campaign.cycle_dir(unit) => Ok(()),
