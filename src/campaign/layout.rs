@@ -16,6 +16,12 @@ impl Campaign {
         self.dir.join("asperities").join(format!("{}.parquet", unit.id))
     }
 
+    /// `estimates/<id>.parquet`.
+    #[must_use]
+    pub fn estimates_path(&self, unit: &SurfaceUnit) -> PathBuf {
+        self.dir.join("estimates").join(format!("{}.parquet", unit.id))
+    }
+
     /// `cycles/<id>/`.
     #[must_use]
     pub fn cycle_dir(&self, unit: &CycleUnit) -> PathBuf {

@@ -41,6 +41,7 @@ impl Campaign {
         for (folder, ending, stage, known) in [
             ("cycles", None, Stage::Cycle, &cycles),
             ("asperities", Some("parquet"), Stage::Extract, &surfaces),
+            ("estimates", Some("parquet"), Stage::Extract, &surfaces),
             ("surfaces", Some("h5"), Stage::Generate, &surfaces),
         ] {
             let mut files = Vec::new();
@@ -64,7 +65,8 @@ impl Campaign {
                 }
             }
         }
-        let folders = ["", "surfaces", "asperities", "statistics", "schemas", "figures", "receipts"].map(|name| self.dir.join(name));
+        let folders =
+            ["", "surfaces", "asperities", "estimates", "statistics", "schemas", "figures", "receipts"].map(|name| self.dir.join(name));
         let receipts = Stage::ALL.map(|stage| self.receipts_dir(stage));
         let cycles = entries(&self.dir.join("cycles")).into_iter().filter(|path| path.is_dir());
         for folder in folders.into_iter().chain(receipts).chain(cycles) {

@@ -65,8 +65,10 @@ impl Stage {
     /// Version of the stage in its keys. It is raised by hand if the stage writes something else for the same parameters.
     fn version(self) -> u32 {
         match self {
-            Self::Generate | Self::Extract => 2,
-            // 18: status and cause of each event.
+            Self::Generate => 2,
+            // 3: estimates of the surface.
+            Self::Extract => 3,
+            // 18: status and cause of each event, estimates of the cycle.
             Self::Cycle => 18,
             Self::Aggregate => 11,
             Self::Report => 15,

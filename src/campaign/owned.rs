@@ -16,7 +16,8 @@ pub const COMPARISON: &str = "comparison";
 /// Word of the stage in the receipt of a comparison.
 pub const COMPARE: &str = "compare";
 /// Folders to which only a run writes.
-const OWN_FOLDERS: [&str; 9] = ["surfaces", "asperities", "cycles", "statistics", "schemas", "figures", "receipts", "snakemake", "slurm"];
+const OWN_FOLDERS: [&str; 10] =
+    ["surfaces", "asperities", "estimates", "cycles", "statistics", "schemas", "figures", "receipts", "snakemake", "slurm"];
 /// Entry in the receipt of a report: figures of earlier reports.
 const EARLIER: &str = "earlier_figures";
 /// Bytes of a text file that are searched for a mark.

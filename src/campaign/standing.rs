@@ -176,6 +176,14 @@ impl Campaign {
         Stage::ALL.into_iter().find(|stage| Some(stage.word()) == word)
     }
 
+    /// Estimates of a failed cycle that depend on its surface and the material alone, by column.
+    #[must_use]
+    pub fn failure_estimates(&self, unit: &CycleUnit) -> Vec<(String, f64)> {
+        let record = self.failure_record(unit).unwrap_or_default();
+        let estimate = |(name, value): (&String, &Value)| Some((name.clone(), value.as_str()?.parse().ok()?));
+        record["estimates"].as_object().into_iter().flatten().filter_map(estimate).collect()
+    }
+
     fn failure_record(&self, unit: &CycleUnit) -> Option<Value> {
         let path = self.failure_path(unit);
         // A pipe in its place would be waited for.

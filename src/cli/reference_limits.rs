@@ -4,7 +4,7 @@ use super::verbs::IMPORT;
 use crate::constants::{Constant, Constants, number};
 use crate::stats::{CAUTIONS, Caution, Limit, condition};
 use crate::text::paragraph;
-use crate::{engines, physics, spec, stages};
+use crate::{engines, spec, stages};
 
 const HEAD: &str = "\
 # Tolerances and limits
@@ -54,7 +54,7 @@ pub(super) fn page() -> String {
 #[must_use]
 pub fn constants() -> Vec<Constants> {
     let others = [IMPORT, spec::CONSTANTS, engines::CONSTANTS];
-    physics::CONSTANTS.into_iter().chain(stages::CONSTANTS).chain(others).collect()
+    stages::constants().chain(others).collect()
 }
 
 /// A warning as a row; a condition that is no limit of a column has no column.

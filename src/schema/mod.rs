@@ -7,6 +7,7 @@ mod avalanches;
 mod comparison;
 mod curves;
 mod cycles;
+mod estimates;
 mod event_kinds;
 mod methods;
 mod parameter;
@@ -20,6 +21,7 @@ pub use avalanches::AVALANCHES;
 pub use comparison::COMPARISON;
 pub use curves::{CURVES, PANELS};
 pub use cycles::CYCLES;
+pub use estimates::{DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES};
 pub use event_kinds::{EVENT_COLOURS, EVENT_KINDS, event_kind};
 pub use methods::METHODS;
 pub use parameter::{CaseFacts, Parameter, ParameterValue};
@@ -105,12 +107,14 @@ const ASPERITIES_ID: Column =
 /// Every table that the program writes.
 pub static TABLES: &[&Table] = &[
     &ASPERITIES,
+    &SURFACE_ESTIMATES,
     &STEPS,
     &CONTACTS,
     &TURNING,
     &MERGED,
     &EVENTS,
     &ADHESIONLESS,
+    &ESTIMATES,
     &REALIZATIONS,
     &CASES,
     &CURVES,

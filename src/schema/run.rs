@@ -3,7 +3,7 @@
 use super::event_kinds::{KINDS_DOC, OF_STEPS};
 use super::{CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, flag, index, join, real, text};
 
-const CYCLE_CASE_ID: Column = text(
+pub(super) const CYCLE_CASE_ID: Column = text(
     "case_id",
     "Identifier of the case, computed without the as_printed entries that only the analytical estimates use; the table cycles lists every case of the cycle",
 );

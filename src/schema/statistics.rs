@@ -138,6 +138,23 @@ const RESULTS: &[Column] = &[
     real("curvature_ratio", "1", "Curvature of the sharpest summits over that of the sharpest valleys of a measured surface (1 % quantiles of the Laplacian) that is rounded nearly everywhere; null elsewhere, with a stated tip radius, and likewise").or_null(),
 ];
 
+/// A column of the table `realizations` that another table has as well.
+pub(super) const fn shared(name: &str) -> Column {
+    let mut at = 0;
+    while at < RESULTS.len() {
+        let (known, wanted) = (RESULTS[at].name.as_bytes(), name.as_bytes());
+        let mut place = 0;
+        while known.len() == wanted.len() && place < known.len() && known[place] == wanted[place] {
+            place += 1;
+        }
+        if place == wanted.len() && known.len() == wanted.len() {
+            return RESULTS[at];
+        }
+        at += 1;
+    }
+    panic!("no such column");
+}
+
 /// Parts of `dissipated` by branch and by kind of event, over E* A0 h_rms and in joule. Each of the two groups sums to `dissipated`.
 macro_rules! parts {
     ($($kind:literal, $_remark:literal, $_colour:literal, $_step:literal, $_avalanche:literal, $of_kind:literal;)+) => {

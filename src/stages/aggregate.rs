@@ -1,11 +1,10 @@
 //! Stage aggregate: from the steps of all cycles to the tables over realizations.
 
 use super::cycle::lattice;
-use super::cycle_input::{cycle_input, of_failed};
+use super::cycle_input::{SurfaceRow, cycle_input, of_failed};
 use super::done::{Clock, Outcome};
 use super::error::incomplete;
 use super::runner::{Context, Single, run_single};
-use super::surface::scale;
 use super::{StageError, Tally, datapackage};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
 use crate::model::Choice;
@@ -130,16 +129,19 @@ fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
 fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[Standing]) -> Result<CaseInput, StageError> {
     let params = &unit.case.params;
     let surface = &params.surface;
+    let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number).map(|cycle| &campaign.surfaces[cycle.surface]);
     // The import of a measured surface may have failed.
-    let is_there = |cycle: &&CycleUnit| surface.measured().is_none() || campaign.surface_path(&campaign.surfaces[cycle.surface]).is_file();
-    let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number).filter(is_there);
-    let scale = of_case.map(|cycle| scale(campaign, &campaign.surfaces[cycle.surface])).transpose()?;
-    let lattice = of_case.map(|cycle| lattice(campaign, cycle)).transpose()?.flatten();
+    let of_scan = of_case.filter(|of| surface.measured().is_some() && campaign.estimates_path(of).is_file());
+    let row = of_scan.map(|of| SurfaceRow::read(campaign, of)).transpose()?;
+    let square = row.as_ref().map(SurfaceRow::square).transpose()?;
+    let lattice = lattice(params, square);
+    let rms_height_m = row.as_ref().map(SurfaceRow::rms_height_m).transpose()?;
+    let generated = surface.generated();
     let facts = CaseFacts {
         params,
         surface_file: campaign.label_of(surface),
-        length_m: scale.map(|scale| scale.length_m),
-        rms_height_m: scale.map(|scale| scale.rms_height_m),
+        length_m: square.map(|square| square.length_m).or(generated.map(|of| of.length_m)),
+        rms_height_m: rms_height_m.or(generated.map(|of| of.rms_height_m)),
         element_points: lattice.map(|lattice| lattice.points as f64),
         attraction_range_m: lattice.and_then(|lattice| lattice.range_m),
     };

@@ -1,11 +1,12 @@
-//! Stage extract: asperities of a surface.
+//! Stage extract: asperities of a surface, and its analytical estimates.
 
 use super::StageError;
 use super::done::Outcome;
+use super::estimates::{Examined, seed, surface_table};
 use super::surface::SurfaceStage;
 use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
-use crate::physics::surface::measured::find_measured;
-use crate::physics::surface::summits::{Summit, find_summits};
+use crate::model::SurfaceSource;
+use crate::physics::surface::summits::Summit;
 use crate::schema;
 use crate::store::hdf5::read_surface;
 use crate::store::{Frame, FrameError, parquet};
@@ -31,32 +32,30 @@ impl SurfaceStage for Extract {
     }
 }
 
-/// Finds the asperities of a surface and writes their table.
+/// Finds the asperities of a surface and writes their table and that of its estimates.
 fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     let (header, heights) = read_surface(&campaign.surface_path(unit))?;
-    let (found, edge) = match &header.measured {
-        Some(measured) => {
-            let points = measured.shortest_wavelength_m * heights.nrows() as f64 / header.length_m;
-            find_measured(header.square(heights.view()), points)?
-        }
-        None => (find_summits(heights.view(), header.length_m, f64::from(unit.params.points_per_shortest_wavelength()))?, 0),
+    let Examined { found, edge_count, estimates } = match &unit.params {
+        SurfaceSource::Measured(_) => Examined::of_measured(&header, heights.view())?,
+        SurfaceSource::Generated(of) => Examined::of_generated(of, &seed(campaign, unit), &header, heights.view())?,
     };
-    let list = &found.list;
-    let frame = table(unit, list)?;
-    let area = header.length_m * header.length_m;
-    let moments = header.moments();
+    let frame = table(unit, &found.list)?;
     let mut keys = vec![
         ("key", unit.asperities_key.clone()),
         // Nayak's density of the realised moments, for comparison with the density found.
-        ("nayak_density_1_m2", moments.summit_density_1_m2().to_string()),
-        ("summit_density_1_m2", (list.len() as f64 / area).to_string()),
+        ("nayak_density_1_m2", estimates.roughness.moments().summit_density_1_m2().to_string()),
+        ("summit_density_1_m2", estimates.summit_density_1_m2().to_string()),
         ("rejected_count", found.rejected.to_string()),
         ("unrefined_count", found.unrefined.to_string()),
     ];
     if header.measured.is_some() {
-        keys.push(("edge_count", edge.to_string()));
+        keys.push(("edge_count", edge_count.to_string()));
     }
-    Ok(Outcome::of(vec![parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?]))
+    let estimates = surface_table(unit, &header, &estimates)?;
+    Ok(Outcome::of(vec![
+        parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?,
+        parquet::write_table(&campaign.estimates_path(unit), &estimates, &keys[..1])?,
+    ]))
 }
 
 /// Table of the asperities of a surface.

@@ -1,10 +1,11 @@
 //! Failures: a record in the folder of the missing cycle, and tasks that are not tried again.
 
+use super::estimates::of_failed;
 use super::{StageError, Watch};
 use crate::campaign::{Campaign, CycleUnit, Stage, Unit};
 use crate::store::{caught, commit};
 use crate::text::shell_path;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -34,7 +35,7 @@ pub(super) fn in_the_way(campaign: &Campaign, task: &Unit<'_>) -> Result<(), Sta
     let mut files = vec![campaign.receipt_path(task)];
     match task.stage {
         Stage::Generate => files.push(file("surfaces", "h5")),
-        Stage::Extract => files.push(file("asperities", "parquet")),
+        Stage::Extract => files.extend(["asperities", "estimates"].map(|folder| file(folder, "parquet"))),
         Stage::Cycle => {
             let folder = campaign.dir.join("cycles").join(task.id);
             if std::fs::symlink_metadata(&folder).is_ok() && !folder.is_dir() {
@@ -77,7 +78,8 @@ pub(super) fn report(
     Ok(())
 }
 
-/// Records that a cycle failed, at which stage and why; of a folder in the way also where it is, since without it nothing has failed.
+/// Records that a cycle failed, at which stage and why, with the estimates of its surface and material. Of a folder in the way it also records the place, since
+/// without the folder nothing has failed.
 fn record(campaign: &Campaign, unit: &CycleUnit, stage: Stage, error: &StageError) -> Result<(), StageError> {
     in_the_way(campaign, &unit.cycle()).or_else(|why| match &why {
         StageError::InTheWay { path, .. } if *path != campaign.cycle_dir(unit) => Ok(()),
@@ -89,6 +91,9 @@ fn record(campaign: &Campaign, unit: &CycleUnit, stage: Stage, error: &StageErro
     }
     let again = format!("hysteron retry {} {}", shell_path(&campaign.dir), unit.id);
     let mut record = json!({ "key": unit.key, "stage": stage.word(), "error": error.to_string(), "again": again });
+    // As text, which is read without rounding.
+    record["estimates"] =
+        of_failed(campaign, unit).into_iter().map(|(name, value)| (name.to_owned(), Value::from(value.to_string()))).collect();
     if let StageError::InTheWay { path, .. } = error {
         let place: &Path = path.strip_prefix(&campaign.dir).unwrap_or(path);
         record["in_the_way"] = place.to_string_lossy().into();

@@ -12,6 +12,7 @@ mod cycle_input;
 mod datapackage;
 mod done;
 mod error;
+mod estimates;
 mod explorer;
 mod explorer_maps;
 mod extract;
@@ -38,6 +39,7 @@ pub use compare::{Comparison, compare};
 pub use cost::Cost;
 pub use cycle::unload_again;
 pub use error::StageError;
+pub use estimates::Examined;
 pub use foreseen::{ARTEFACTS, Foreseen, Outside, foreseen};
 pub use measure::{Imported, measure};
 pub use outside::in_words;
@@ -46,8 +48,12 @@ pub use sampling::sampled;
 pub use task::{Tally, Task, Watch};
 pub use verdict::{Verdict, chosen_method};
 
-/// Numerical choices and limits of cycles and of the report that are made here.
-pub const CONSTANTS: [Constants; 3] = [
+/// Numerical choices and limits of the physics, and those of cycles and of the report that are made here.
+pub fn constants() -> impl Iterator<Item = Constants> {
+    crate::physics::CONSTANTS.into_iter().chain(CONSTANTS)
+}
+
+const CONSTANTS: [Constants; 3] = [
     Constants { subject: "Cycles", module: "stages::cycle", rows: cycle::CONSTANTS },
     Constants { subject: "Loop explorer", module: "stages::explorer", rows: explorer::CONSTANTS },
     Constants { subject: "Estimates before a run", module: "stages::cost", rows: cycle::ESTIMATES },

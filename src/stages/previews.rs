@@ -1,13 +1,10 @@
 //! Measured surfaces before a run, read as the run reads them.
 
-use super::StageError;
+use super::estimates::Examined;
 use super::measure::measure;
 use crate::campaign::{Campaign, SurfaceUnit};
 use crate::formats::recognize;
 use crate::model::MeasuredSurface;
-use crate::physics::surface::measured::find_measured;
-use crate::physics::surface::summits::Summit;
-use crate::physics::theory::flattening::{Flattening, measured_flattening, shortest_wavelength};
 use crate::store::hdf5::{SurfaceHeader, read_header, read_surface};
 use ndarray::Array2;
 use std::path::Path;
@@ -31,18 +28,8 @@ pub(super) enum Preview {
 pub(super) struct Known {
     /// Header of its file in a run.
     pub(super) header: SurfaceHeader,
-    /// Energies of flattening at a modulus of 1 Pa, and asperities; nothing for a surface of many points.
-    pub(super) details: Option<Result<Details, String>>,
-}
-
-/// Energies and asperities of a measured surface.
-pub(super) struct Details {
-    /// Energies of flattening at a modulus of 1 Pa.
-    pub(super) unit: Flattening,
-    /// Shortest wavelength over the cut-off of the filter.
-    pub(super) shortest: f64,
-    /// Asperities.
-    pub(super) summits: Vec<Summit>,
+    /// Asperities and estimates; nothing for a surface of many points.
+    pub(super) details: Option<Result<Examined, String>>,
 }
 
 impl Preview {
@@ -73,7 +60,8 @@ impl Preview {
     }
 
     fn read(header: SurfaceHeader, heights: &Array2<f64>, most_points: usize) -> Self {
-        let details = (heights.nrows() <= most_points).then(|| details(&header, heights).map_err(|error| error.to_string()));
+        let details =
+            (heights.nrows() <= most_points).then(|| Examined::of_measured(&header, heights.view()).map_err(|error| error.to_string()));
         Self::Known(Box::new(Known { header, details }))
     }
 
@@ -84,18 +72,8 @@ impl Preview {
 }
 
 impl Known {
-    /// Energies and asperities, if they were computed.
-    pub(super) fn found(&self) -> Option<&Details> {
+    /// Asperities and estimates, if they were computed.
+    pub(super) fn found(&self) -> Option<&Examined> {
         self.details.as_ref()?.as_ref().ok()
     }
-}
-
-fn details(header: &SurfaceHeader, heights: &Array2<f64>) -> Result<Details, StageError> {
-    let cut_off_m = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m);
-    let (square, points) = (header.square(heights.view()), cut_off_m * heights.nrows() as f64 / header.length_m);
-    let (found, _) = find_measured(square, points)?;
-    let shortest_m = shortest_wavelength(square, cut_off_m)?;
-    let unit = measured_flattening(square, shortest_m, 1.0)?;
-    let shortest = if shortest_m > cut_off_m { shortest_m / cut_off_m } else { 1.0 };
-    Ok(Details { unit, shortest, summits: found.list })
 }

@@ -1,7 +1,8 @@
 //! Figures of a single cycle for the report.
 
 use super::StageError;
-use super::surface::{scale, target};
+use super::estimates::target;
+use super::surface::scale;
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Closer, ElementsLoop, closer, elements_loop};
 use crate::model::{Boundary, Choice, GeneratedSurface, Method, MethodOptions, Normalization, SurfaceSource};

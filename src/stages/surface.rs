@@ -6,17 +6,10 @@ use super::runner::{Context, Tasks};
 use super::{StageError, failure};
 use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::{GeneratedSurface, SurfaceSource};
-use crate::physics::surface::spectrum::Spectrum;
-use crate::spec::CaseParams;
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::marker::PhantomData;
-
-/// Target spectrum of a case; a measured surface has none.
-pub(super) fn target(params: &CaseParams) -> Option<Spectrum> {
-    params.surface.generated().map(GeneratedSurface::spectrum)
-}
 
 /// Units of the lengths and heights of a surface.
 #[derive(Debug, Clone, Copy)]

@@ -2,8 +2,8 @@
 
 use super::cost::Cost;
 use super::cycle::{Trial, cost, refusal};
+use super::estimates::target;
 use super::previews::{Known, Preview};
-use super::surface::target;
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, Standing};
 use crate::model::Method;
 use crate::physics::theory::flattening::{Flattening, flattening};
@@ -90,9 +90,8 @@ fn energies(params: &CaseParams, known: Option<&Known>) -> Option<(Flattening, f
     if let Some(asked) = target(params) {
         return Some((flattening(&asked, modulus), asked.moments().rms_slope()));
     }
-    let (known, unit) = known.and_then(|known| Some((known, known.found()?.unit)))?;
-    let energy = Flattening { whole_j_m2: modulus * unit.whole_j_m2, octave_j_m2: modulus * unit.octave_j_m2 };
-    Some((energy, known.header.rms_slope))
+    let estimates = known?.found()?.estimates;
+    Some((estimates.flattening.energies(modulus), estimates.roughness.rms_slope))
 }
 
 /// The method of `method = "auto"` for a case with a measured surface.

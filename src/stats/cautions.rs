@@ -2,7 +2,7 @@
 
 use super::rows::Value;
 use super::{CaseInput, Given};
-use crate::physics::theory::regime::{BRIDGED, LARGE_AREA, SEPARATE};
+use crate::model::{BRIDGED, LARGE_AREA, SEPARATE};
 
 /// A warning that a row of the table `cases` may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

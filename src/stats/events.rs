@@ -7,9 +7,6 @@ use crate::schema::{EVENT_KINDS, EVENTS, EventKind, event_kind};
 use crate::store::parquet::read_table;
 use crate::store::{Frame, FrameError};
 
-/// Number of the asperity of an event of boundary elements, which has none.
-const NO_ASPERITY: i64 = -1;
-
 /// One event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Event {
@@ -19,7 +16,6 @@ pub(super) struct Event {
     pub(super) max_load: Option<f64>,
     pub(super) kind: EventKind,
     pub(super) cause: EventKind,
-    pub(super) asperity_id: i64,
     pub(super) approach_m: f64,
     pub(super) avalanche_id: i64,
     pub(super) load_before_n: f64,
@@ -64,15 +60,6 @@ impl Events {
         self.0.iter().filter(move |event| if event.loading { event.step <= turning_step } else { back(event) })
     }
 
-    /// The asperities that came into contact in that loop, each once, ascending.
-    pub(super) fn touched(&self, turning_step: i64, max_load: f64) -> Vec<i64> {
-        let jumps = self.of_loop(turning_step, max_load).filter(|event| event.kind.begins_contact());
-        let mut touched: Vec<i64> = jumps.map(|event| event.asperity_id).collect();
-        touched.sort_unstable();
-        touched.dedup();
-        touched
-    }
-
     /// Energies dissipated up to a load reversal, whose step is given, and while unloading from it.
     ///
     /// One loading path serves every load reversal: events beyond the step of this one are not part of its
@@ -90,7 +77,7 @@ impl Events {
 
 /// The events of a table, or why a row is none.
 fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
-    let (steps, avalanches, asperities) = (frame.i64("step")?, frame.i64("avalanche_id")?, frame.i64_or_null("asperity_id")?);
+    let (steps, avalanches) = (frame.i64("step")?, frame.i64("avalanche_id")?);
     let (branches, max_loads) = (frame.text("branch")?, frame.f64_or_null("max_load")?);
     let (kinds, causes) = (frame.text("kind")?, frame.text("cause")?);
     let known = |word: &str| event_kind(word).ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")));
@@ -110,7 +97,6 @@ fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
             max_load,
             kind: known(kinds[row])?,
             cause: known(causes[row])?,
-            asperity_id: asperities[row].unwrap_or(NO_ASPERITY),
             approach_m: approaches[row],
             avalanche_id: avalanches[row],
             load_before_n: loads_before[row],

@@ -1,8 +1,7 @@
 //! Statistics: means, standard deviations and mean curves from the steps of many cycles.
 //!
 //! Tables are read and checked by the store, and grouped by Polars. Every sum is taken here, in the order of the realizations, so that the tables
-//! have the same bytes with any number of threads. This module solves no contact problem: the analytical estimates of each cycle are given to it. Of the
-//! physics it uses the energy balance of a loop, with its limits.
+//! have the same bytes with any number of threads. This module is independent of the physics: the analytical estimates of each cycle are given to it.
 
 mod avalanches;
 mod cases;
@@ -100,14 +99,19 @@ pub struct CycleInput {
     pub loss_dalvi_per_area_j: f64,
     /// Energy dissipated by crack-front pinning over the nominal area \[J\]; nothing where that is undefined.
     pub loss_pinning_per_area_j: Option<f64>,
-    /// Energy that each asperity dissipates in isolation \[J\], by its number.
-    pub asperity_loss_j: Vec<f64>,
-    /// Further columns that depend on the load reversal, by its load.
+    /// Further columns that depend on the load reversal, by its load; and `resolution_j`, the dissipated energy below which Θ is not resolved \[J\].
     pub at_max_load: Vec<(f64, Given)>,
     /// Every column of the table `realizations` that follows neither from the steps nor from the case:
     /// numbers of asperities, moments, Tabor parameters. An absent one is null, and an error where the table
     /// allows no null.
     pub surface: Given,
+}
+
+impl CycleInput {
+    /// Further columns at a load reversal.
+    fn at(&self, max_load: f64) -> Option<&Given> {
+        self.at_max_load.iter().find(|(load, _)| *load == max_load).map(|(_, given)| given)
+    }
 }
 
 /// Why a table could not be made.

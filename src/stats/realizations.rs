@@ -4,7 +4,6 @@ use super::cycle::{Branch, Cycle, fault};
 use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
 use super::{CaseInput, CycleInput, Given, StatsError};
-use crate::physics::cycle::soundness::LoopEnergy;
 use crate::schema::{EVENT_KINDS, EventKind, REALIZATIONS};
 use crate::store::Frame;
 
@@ -32,11 +31,7 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
             let lost = events.lost(step, *max_load);
             results.push(("absorption_share".to_owned(), absorption_share(&lost, &results).into()));
             results.extend(parts(&lost, input));
-            if !by_elements(case) {
-                results.push(("loss_touched".to_owned(), touched(&events.touched(step, *max_load), input).into()));
-            }
-            let given = input.at_max_load.iter().find(|(load, _)| load == max_load);
-            results.extend(given.map(|(_, given)| given.clone()).unwrap_or_default());
+            results.extend(input.at(*max_load).cloned().unwrap_or_default());
             ordered.push((&case.case_id, *max_load, input.realization, results, case, input));
         }
     }
@@ -92,23 +87,12 @@ fn absorption_share(lost: &Lost, results: &Given) -> Option<f64> {
     (loss != 0.0).then(|| (kinds.map(|(_, energy)| energy).sum::<f64>() / loss).abs())
 }
 
-/// True if boundary elements compute the case.
-fn by_elements(case: &CaseInput) -> bool {
-    case.parameters.iter().any(|(name, value)| name == "method" && *value == Value::from("boundary_elements"))
-}
-
-/// Energy dissipated by the contacting asperities as isolated ones, over the scale of energies.
-fn touched(asperities: &[i64], input: &CycleInput) -> f64 {
-    // Spots that have become one have numbers beyond those of the asperities.
-    let each = asperities.iter().filter_map(|id| input.asperity_loss_j.get(usize::try_from(*id).ok()?));
-    each.sum::<f64>() / input.energy_scale_j
-}
-
 /// Resolution of Θ over |Θ|; nothing for Θ = 0. The energy balance of boundary elements is exact, so that its error is one of Θ.
-fn uncertainty(energy: LoopEnergy, input: &CycleInput) -> Option<f64> {
-    let by_elements = input.surface.iter().any(|(name, value)| name == "elements_per_wavelength" && value.number().is_some());
-    let error_j = if by_elements { energy.imbalance_j() } else { 0.0 };
-    (energy.loss_j != 0.0).then(|| energy.resolution_j().max(error_j) / energy.loss_j.abs())
+fn uncertainty([loss_j, imbalance_j]: [f64; 2], max_load: f64, input: &CycleInput) -> Option<f64> {
+    let number = |given: &Given, name: &str| given.iter().find(|(known, _)| known == name).and_then(|(_, value)| value.number());
+    let resolution_j = input.at(max_load).and_then(|given| number(given, "resolution_j"))?;
+    let error_j = number(&input.surface, "elements_per_wavelength").map_or(0.0, |_| imbalance_j);
+    (loss_j != 0.0).then(|| resolution_j.max(error_j) / loss_j.abs())
 }
 
 /// Pull-off force \[N\]. With adhesion one of 0 is lost in the load.
@@ -120,9 +104,8 @@ fn pull_off_n(unloading: &Branch, input: &CycleInput) -> Option<f64> {
 }
 
 /// Energy-balance error over |Θ|; without adhesion, energy of the events of loading over the work.
-fn audit_gap(energy: LoopEnergy, on_loading_j: f64) -> Option<f64> {
-    let LoopEnergy { loss_j, work_j, .. } = energy;
-    let (imbalance_j, compared_j) = if loss_j == 0.0 { (on_loading_j.abs(), work_j) } else { (energy.imbalance_j(), loss_j.abs()) };
+fn audit_gap([loss_j, imbalance_j]: [f64; 2], on_loading_j: f64, work_j: f64) -> Option<f64> {
+    let (imbalance_j, compared_j) = if loss_j == 0.0 { (on_loading_j.abs(), work_j) } else { (imbalance_j, loss_j.abs()) };
     (compared_j > 0.0).then(|| imbalance_j / compared_j)
 }
 
@@ -146,8 +129,7 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let on_loading: f64 = loading.dissipated_j.iter().take(turning + 1).sum();
     // Without adhesion the events of loading are undone on unloading, and nothing but rounding remains.
     let dissipated_j = if loss_j == 0.0 { 0.0 } else { on_loading + unloading.dissipated_j.iter().sum::<f64>() };
-    let energy = LoopEnergy { loss_j, events_j: dissipated_j, work_j };
-    let uncertainty = uncertainty(energy, input);
+    let energies = [loss_j, (loss_j - dissipated_j).abs()];
     // The resolution of a negative energy is at least its magnitude: it is no result.
     let is_resolved = loss_j >= 0.0;
     let converged = loading.converged.iter().take(turning + 1).chain(&unloading.converged);
@@ -178,8 +160,8 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0 && is_resolved).map(|dk| loss / dk).into()),
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),
-        ("audit_gap", audit_gap(energy, on_loading).into()),
-        ("loss_uncertainty", uncertainty.into()),
+        ("audit_gap", audit_gap(energies, on_loading, work_j).into()),
+        ("loss_uncertainty", uncertainty(energies, max_load, input).into()),
         ("contact_count_at_max_load", contacts.into()),
         ("touching_count_at_max_load", touching.into()),
         ("covered_count_at_max_load", covered.into()),

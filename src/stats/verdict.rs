@@ -2,8 +2,7 @@
 
 use super::methods::{MethodPair, method_pairs};
 use super::{StatsError, significant};
-use crate::model::{Choice as _, Method};
-use crate::physics::theory::regime::Regime;
+use crate::model::{Choice as _, Method, Regime};
 use crate::store::Frame;
 
 /// Warnings of the range of the asperity model that are part of a verdict.

@@ -136,6 +136,11 @@ impl Frame {
         values.collect::<Option<_>>().ok_or_else(|| self.missing(name))
     }
 
+    /// The real number of a column in the first row.
+    pub fn first_f64(&self, name: &str) -> Result<f64, FrameError> {
+        self.f64_or_null(name)?.first().copied().flatten().ok_or_else(|| self.missing(name))
+    }
+
     /// The whole numbers of a column that has no missing ones.
     pub fn i64(&self, name: &str) -> Result<Vec<i64>, FrameError> {
         let values = self.i64_or_null(name)?.iter().copied();

@@ -178,6 +178,21 @@ fn law_imports_of_the_physics_go_in_one_direction() {
 }
 
 #[test]
+fn law_tables_are_made_of_tables_alone() {
+    let is_of_tables = |module: &[String]| match module {
+        [first, ..] if ["stats", "figures", "report", "cli"].contains(&first.as_str()) => true,
+        [first, second] => first == "stages" && ["aggregate", "cycle_input"].contains(&second.as_str()),
+        _ => false,
+    };
+    let graph = imports();
+    let of_tables: Vec<_> = graph.iter().filter(|(module, _)| is_of_tables(module)).collect();
+    assert!(of_tables.len() > 50, "too few modules found, the reader is wrong");
+    for (module, targets) in of_tables {
+        assert!(targets.iter().all(|target| target[0] != "physics"), "{module:?} imports the physics");
+    }
+}
+
+#[test]
 fn reg_the_reader_of_imports() {
     let known: BTreeSet<Vec<String>> = ["a", "a::b", "a::c", "d"].iter().map(|m| m.split("::").map(str::to_owned).collect()).collect();
     let module = ["a".to_owned(), "b".to_owned()];

@@ -10,6 +10,7 @@ mod artefacts;
 mod boundary_elements;
 mod coupled;
 mod cycle;
+mod estimates;
 mod examples;
 mod extremes;
 mod fast;

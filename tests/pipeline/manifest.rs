@@ -43,7 +43,7 @@ fn law_all_files_of_two_runs_are_the_same() {
             found.iter().for_each(|(path, digest)| eprintln!("{digest} {}", path.display()));
             continue;
         }
-        for name in ["steps", "contacts", "events", "adhesionless", "turning", "merged", "cases", "realizations"] {
+        for name in ["steps", "contacts", "events", "adhesionless", "estimates", "turning", "merged", "cases", "realizations"] {
             let name = format!("{name}.parquet");
             assert!(found.keys().any(|path| path.file_name().is_some_and(|of| of == name.as_str())), "no {name}");
         }

@@ -164,7 +164,6 @@ pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) 
         loss_dk_realised_per_area_j: Some(0.93 * dk_per_area_j),
         loss_dalvi_per_area_j: 3.0 * dk_per_area_j,
         loss_pinning_per_area_j: None,
-        asperity_loss_j: vec![1e-10; 20],
         at_max_load: [0.002, 0.004, 0.0071, 0.012, 0.015]
             .map(|load| (load, given(&[("area_adhesionless", (5.0 * load).into()), ("area_adhesionless_small", (6.0 * load).into())])))
             .to_vec(),

@@ -13,10 +13,7 @@ use crate::keys::digest_of_file;
 use crate::lengths::sizes;
 use crate::model::MeasuredSurface;
 use crate::model::{Choice, Detrend, FastAxis, Filter, Missing};
-use crate::physics::surface::measured::find_measured;
-use crate::physics::surface::summits::Summit;
-use crate::physics::theory::flattening::{measured_flattening, shortest_wavelength};
-use crate::stages::{Imported, measure};
+use crate::stages::{Examined, Imported, measure};
 use crate::store::hdf5::{read_surface, write_surface, write_tamaas};
 use crate::store::scan::export::write_netcdf3;
 use range::Range;
@@ -57,18 +54,13 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     if !asked.dry_run {
         may_be_written("the surface", &out, &asked.file, asked.force)?;
     }
-    let square = header.square(prepared.heights_m.view());
-    let points = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m) * prepared.heights_m.nrows() as f64 / header.length_m;
-    let (summits, edge) = find_measured(square, points).map_err(failed)?;
+    let examined = Examined::of_measured(&header, prepared.heights_m.view()).map_err(failed)?;
     if !asked.dry_run {
         write_surface(&out, &header, prepared.heights_m.view()).map_err(failed)?;
     }
     let written = (!asked.dry_run).then_some(out.as_path());
-    let cut_off_m = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m);
-    let shortest_m = shortest_wavelength(square, cut_off_m).map_err(failed)?;
-    let unit = measured_flattening(square, shortest_m, 1.0).map_err(failed)?;
-    let range = Range::of(&unit, shortest_m, summits.list.iter().map(Summit::radius_m));
-    let counts = [prepared.heights_m.nrows(), summits.list.len(), edge];
+    let range = Range::of(&examined);
+    let counts = [prepared.heights_m.nrows(), examined.estimates.summit_count, examined.edge_count];
     let statistics = Statistics { file: &asked.file, header: &header, height_factor_m, notes: &notes, range: &range, counts, written };
     if asked.json {
         let rings: Vec<Value> = prepared

@@ -1,7 +1,6 @@
 //! Verdicts on cases before a run, as text and as JSON.
 
-use crate::model::{Choice, Method};
-use crate::physics::theory::regime::Regime;
+use crate::model::{Choice, Method, Regime};
 use crate::stages::{Cost, Foreseen, Outside, Verdict, in_words};
 use crate::stats::{Caution, significant};
 use crate::text::{counted, visible, wrapped};

@@ -63,19 +63,67 @@ pub fn flattening(spectrum: &Spectrum, contact_modulus_pa: f64) -> Flattening {
     Flattening { whole_j_m2: prefactor * band(1.0), octave_j_m2: prefactor * band((0.5 * zeta).max(1.0)) }
 }
 
-/// Flattening energies of the realised spectrum of a seed, with E* \[Pa\].
+/// Flattening of a realised surface without its material: a wavenumber, and sums over its modes.
 ///
-/// Sums in place of the integrals of [`flattening`], with the amplitudes and normalisation of the spectrum.
+/// `U/A0 = E* q_u S` with `S = ¼ Σ_k (k/q_u)|c_k|²`. The unit of wavenumbers q_u is kept apart, since
+/// mode numbers are integers on a generated surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RelativeFlattening {
+    /// Unit of wavenumbers q_u \[1/m\].
+    pub wavenumber_1_m: f64,
+    /// Sum S of all the roughness \[m²\].
+    pub whole_m2: f64,
+    /// Sum S of its shortest octave \[m²\].
+    pub octave_m2: f64,
+}
+
+impl RelativeFlattening {
+    /// Flattening of the realised spectrum of a seed, with q_u = 2π/L.
+    ///
+    /// Sums in place of the integrals of [`flattening`], with the amplitudes and normalisation of the
+    /// spectrum.
+    #[must_use]
+    pub fn realised(spectrum: &Spectrum, seed: &[u8; 32]) -> Self {
+        let edge = u64::from(spectrum.magnification).pow(2);
+        let [whole, octave] = mode_sums(spectrum, seed, |mode_squared| {
+            let wavenumber = (mode_squared as f64).sqrt();
+            // In integers the edge of the octave is exact, as is that of the band.
+            [wavenumber, if 4 * mode_squared >= edge { wavenumber } else { 0.0 }]
+        });
+        Self { wavenumber_1_m: spectrum.lowest_wavenumber(), whole_m2: 0.25 * whole, octave_m2: 0.25 * octave }
+    }
+
+    /// Flattening of heights on a square with the shortest wavelength \[m\], with q_u = 1/m.
+    ///
+    /// The shortest octave has all wavelengths of less than two shortest ones.
+    /// A field that is not periodic is extended by its mirror images for all of its roughness.
+    /// The slopes of their kinks would add to the shortest octave, for which a Hann window is used.
+    ///
+    /// # Errors
+    /// Too little memory.
+    pub fn measured(map: SquareMap<'_>, shortest_wavelength_m: f64) -> Result<Self, PhysicsError> {
+        let SquareMap { heights_m, length_m, edges } = map;
+        let edge = TAU / shortest_wavelength_m;
+        let sums = |field: &Field| field.weighted(|q| [q, if 2.0 * q >= edge { q } else { 0.0 }]);
+        let [whole, mut octave] = sums(&Field::of(heights_m, length_m, edges)?);
+        if edges == Edges::Open {
+            octave = whole.min(sums(&Field::of(windowed(heights_m)?.view(), length_m, Edges::Periodic)?)[1]);
+        }
+        Ok(Self { wavenumber_1_m: 1.0, whole_m2: 0.25 * whole, octave_m2: 0.25 * octave })
+    }
+
+    /// Flattening energies with E* \[Pa\].
+    #[must_use]
+    pub fn energies(&self, contact_modulus_pa: f64) -> Flattening {
+        let unit = contact_modulus_pa * self.wavenumber_1_m;
+        Flattening { whole_j_m2: unit * self.whole_m2, octave_j_m2: unit * self.octave_m2 }
+    }
+}
+
+/// Flattening energies of the realised spectrum of a seed, with E* \[Pa\]. See [`RelativeFlattening::realised`].
 #[must_use]
 pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus_pa: f64) -> Flattening {
-    let unit = 0.25 * contact_modulus_pa * spectrum.lowest_wavenumber();
-    let edge = u64::from(spectrum.magnification).pow(2);
-    let [whole, octave] = mode_sums(spectrum, seed, |mode_squared| {
-        let wavenumber = (mode_squared as f64).sqrt();
-        // In integers the edge of the octave is exact, as is that of the band.
-        [wavenumber, if 4 * mode_squared >= edge { wavenumber } else { 0.0 }]
-    });
-    Flattening { whole_j_m2: unit * whole, octave_j_m2: unit * octave }
+    RelativeFlattening::realised(spectrum, seed).energies(contact_modulus_pa)
 }
 
 /// Shortest wavelength of heights on a square after a low-pass filter with a cut-off \[m\].
@@ -113,21 +161,10 @@ pub fn shortest_wavelength(map: SquareMap<'_>, cut_off_m: f64) -> Result<f64, Ph
 /// Points per cut-off wavelength for which derivatives are defined.
 const FEWEST_POINTS: f64 = 2.5;
 
-/// Flattening energies of heights on a square, with the shortest wavelength \[m\] and E* \[Pa\].
-///
-/// The shortest octave has all wavelengths of less than two shortest ones.
-/// A field that is not periodic is extended by its mirror images for all of its roughness.
-/// The slopes of their kinks would add to the shortest octave, for which a Hann window is used.
+/// Flattening energies of heights on a square, with the shortest wavelength and E* \[Pa\]. See [`RelativeFlattening::measured`].
 ///
 /// # Errors
 /// Too little memory.
 pub fn measured_flattening(map: SquareMap<'_>, shortest_wavelength_m: f64, contact_modulus_pa: f64) -> Result<Flattening, PhysicsError> {
-    let SquareMap { heights_m, length_m, edges } = map;
-    let edge = TAU / shortest_wavelength_m;
-    let sums = |field: &Field| field.weighted(|q| [q, if 2.0 * q >= edge { q } else { 0.0 }]);
-    let [whole, mut octave] = sums(&Field::of(heights_m, length_m, edges)?);
-    if edges == Edges::Open {
-        octave = whole.min(sums(&Field::of(windowed(heights_m)?.view(), length_m, Edges::Periodic)?)[1]);
-    }
-    Ok(Flattening { whole_j_m2: 0.25 * contact_modulus_pa * whole, octave_j_m2: 0.25 * contact_modulus_pa * octave })
+    Ok(RelativeFlattening::measured(map, shortest_wavelength_m)?.energies(contact_modulus_pa))
 }

@@ -7,6 +7,7 @@
 //! and the criterion of Pastewka and Robbins (2014). Persson and Tosatti's criterion is in [`flattening`].
 
 pub mod approximate_jkr;
+pub mod estimates;
 pub mod flattening;
 pub mod regime;
 

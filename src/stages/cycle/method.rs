@@ -3,13 +3,12 @@
 use super::super::StageError;
 use super::super::cost::Cost;
 use super::super::previews::Known;
-use super::elements::{Lattice, Of};
+use super::elements::{Lattice, Of, Square};
 use super::{Computed, CycleTask, asperities, elements};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::MethodOptions;
 use crate::physics::cycle::Cycle;
 use crate::spec::CaseParams;
-use crate::store::hdf5::read_header;
 
 /// Computes a cycle.
 pub(super) fn run(task: &CycleTask<'_>) -> Result<Computed, StageError> {
@@ -30,13 +29,12 @@ pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Res
     }
 }
 
-/// Grid of a cycle; nothing for a method without one.
-pub(in crate::stages) fn lattice(campaign: &Campaign, unit: &CycleUnit) -> Result<Option<Lattice>, StageError> {
-    let params = &campaign.cases[unit.case].case.params;
-    let MethodOptions::Elements(options) = &params.method else { return Ok(None) };
-    let of_surface = || read_header(&campaign.surface_path(&campaign.surfaces[unit.surface]));
-    let header = params.surface.measured().map(|_| of_surface()).transpose()?;
-    Ok(Of { params, options }.lattice(header.as_ref()))
+/// Grid of a case on a generated surface, or on the square of a measured one; nothing without it, and for a method without a grid.
+pub(in crate::stages) fn lattice(params: &CaseParams, square: Option<Square>) -> Option<Lattice> {
+    match &params.method {
+        MethodOptions::Asperities(_) => None,
+        MethodOptions::Elements(options) => Of { params, options }.lattice(square),
+    }
 }
 
 /// Grid, memory and time of a cycle at a ratio `U_el/Δγ`; nothing for a measured surface that is not known.

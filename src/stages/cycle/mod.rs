@@ -3,13 +3,14 @@
 mod asperities;
 mod constants;
 mod elements;
+mod estimates;
 mod method;
 mod not_reached;
 mod tables;
 
 pub(super) use asperities::Trial;
 pub(super) use constants::{CONSTANTS, ESTIMATES};
-pub(super) use elements::announced;
+pub(super) use elements::{Square, announced};
 pub use method::unload_again;
 pub(super) use method::{cost, lattice, refusal};
 
@@ -22,6 +23,8 @@ use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Method as Kind;
 use crate::physics::LoopPosition;
 use crate::physics::cycle::{Cycle, Effort, Method};
+use crate::physics::surface::summits::Summit;
+use crate::physics::theory::approximate_jkr::CurvePoint;
 use crate::spec::CaseParams;
 use crate::store::commit::Written;
 use crate::store::{Frame, parquet, read_halfway, write_halfway};
@@ -115,7 +118,7 @@ struct CycleTask<'a> {
     watch: &'a dyn Watch,
 }
 
-/// Result of a method: a cycle, further files of this method, and the units of the dimensionless columns.
+/// Result of a method: a cycle, further files of this method, the units of the dimensionless columns, and the input of the estimates.
 struct Computed {
     method: &'static str,
     /// Name and number of the unknowns.
@@ -126,6 +129,11 @@ struct Computed {
     load_unit_n: f64,
     area_m2: f64,
     rms_height_m: f64,
+    summits: Vec<Summit>,
+    /// Curve of the same surface without adhesion; empty for asperities.
+    adhesionless: Vec<CurvePoint>,
+    /// Grid points per cut-off wavelength; nothing for asperities.
+    per_wavelength: Option<f64>,
 }
 
 impl<'a> CycleTask<'a> {
@@ -152,7 +160,8 @@ fn compute(task: CycleTask<'_>) -> Result<Outcome, StageError> {
     let mut computed = method::run(&task)?;
     let max_loads = &task.params().cycle.max_load;
     let of_all = tables::Tables { of: Identity::of(campaign, unit), computed: &computed, max_loads };
-    let mut files = write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?])?;
+    let mut files =
+        write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?, estimates::table(task, &computed)?])?;
     files.extend(write_tables(campaign, unit, &computed.tables)?);
     files.append(&mut computed.files);
     let unreached = std::mem::take(&mut computed.cycle.unreached);

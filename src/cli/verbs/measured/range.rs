@@ -1,23 +1,19 @@
 //! Range of the asperity model on a measured surface.
 
-use crate::model::Material;
-use crate::physics::jkr::Asperity;
-use crate::physics::jkr::LEAST_TABOR;
-use crate::physics::theory::flattening::Flattening;
-use crate::physics::theory::regime::FLATTENED;
+use crate::model::{FLATTENED, Material};
 use crate::spec::CaseParams;
+use crate::stages::Examined;
 use crate::stats::{Limit, significant};
 
 /// Range of the asperity model on a surface: the elastic energies that flatten its roughness are proportional to E*.
-pub(super) struct Range {
+pub(super) struct Range<'a> {
     /// `U_el/E*` \[m\], of all roughness.
     pub(super) whole_m: f64,
     /// `U_1/E*` \[m\], of the shortest octave; 0 where that is unknown.
     pub(super) octave_m: f64,
     /// Shortest wavelength of this octave \[m\].
     pub(super) shortest_m: f64,
-    /// Smallest radius of an asperity \[m\]; nothing without asperities.
-    radius_m: Option<f64>,
+    examined: &'a Examined,
 }
 
 /// Work of adhesion of the printed spec \[J/m²\].
@@ -26,15 +22,21 @@ const ADHESION_J_M2: f64 = 0.05;
 /// Modulus of the printed spec over the smallest one inside the range, at least.
 const MARGIN: f64 = 1.5;
 
-/// Limits of `U_el/Δγ` and `U_1/Δγ`.
-fn limits() -> [f64; 2] {
-    ["sticky", "conformed"].map(|code| Limit::of(code).map_or(f64::NAN, |limit| limit.bound))
+/// Limit of a warning.
+fn limit(code: &str) -> f64 {
+    Limit::of(code).map_or(f64::NAN, |limit| limit.bound)
 }
 
-impl Range {
-    /// Of the energies at a modulus of 1 Pa, and the radii of the asperities \[m\].
-    pub(super) fn of(unit: &Flattening, shortest_m: f64, radii_m: impl Iterator<Item = f64>) -> Self {
-        Self { whole_m: unit.whole_j_m2, octave_m: unit.octave_j_m2, shortest_m, radius_m: radii_m.reduce(f64::min) }
+/// Limits of `U_el/Δγ` and `U_1/Δγ`.
+fn limits() -> [f64; 2] {
+    ["sticky", "conformed"].map(limit)
+}
+
+impl<'a> Range<'a> {
+    /// Of a surface with its asperities and estimates.
+    pub(super) fn of(examined: &'a Examined) -> Self {
+        let (unit, shortest_m) = (examined.estimates.flattening.energies(1.0), examined.estimates.shortest_wavelength_m);
+        Self { whole_m: unit.whole_j_m2, octave_m: unit.octave_j_m2, shortest_m, examined }
     }
 
     /// The ratios `U_el/Δγ` and `U_1/Δγ` of a material.
@@ -82,11 +84,12 @@ impl Range {
         let mut text = format!("[material]      {ratios}\ncontact_modulus_pa = {modulus:e}\nwork_of_adhesion_j_m2 = {ADHESION_J_M2}\n");
         let range_m = CaseParams::default().material.interaction_range_m;
         let material = Material { contact_modulus_pa: modulus, work_of_adhesion_j_m2: ADHESION_J_M2, interaction_range_m: range_m };
-        let asperity = self.radius_m.and_then(|radius| Asperity::new(radius, &material).ok());
-        let tabor = asperity.map(|asperity| asperity.tabor(range_m));
-        let jump_in = tabor.filter(|tabor| *tabor < LEAST_TABOR).map(|tabor| {
-            format!("jump_in = \"jkr\"      # Tabor parameter μ ≥ {}; \"wu\" requires {LEAST_TABOR}\n", significant(tabor, 2))
-        });
+        let least = limit("tabor");
+        let jump_in = self
+            .examined
+            .least_tabor(&material)
+            .filter(|tabor| *tabor < least)
+            .map(|tabor| format!("jump_in = \"jkr\"      # Tabor parameter μ ≥ {}; \"wu\" requires {least}\n", significant(tabor, 2)));
         let boundary = (!periodic).then(|| "boundary = \"isolated\"\n".to_owned());
         let model: Vec<String> = [boundary, jump_in].into_iter().flatten().collect();
         if !model.is_empty() {

@@ -3,7 +3,6 @@
 use super::quality::{self, Line};
 use super::range::Range;
 use crate::model::{Choice, Detrend, Filter, SpectrumEnd};
-use crate::physics::surface::texture::Texture;
 use crate::spec::quoted;
 use crate::stats::{Limit, significant};
 use crate::store::hdf5::{Measured, SurfaceHeader};
@@ -21,7 +20,7 @@ pub(super) struct Statistics<'a> {
     pub(super) height_factor_m: Option<f64>,
     /// Sentences on how the file was read.
     pub(super) notes: &'a [String],
-    pub(super) range: &'a Range,
+    pub(super) range: &'a Range<'a>,
     /// Points along a side, asperities, and further ones near the edge.
     pub(super) counts: [usize; 3],
     /// The file written.
@@ -66,7 +65,7 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
         "source_blake3": measured.map(|of| of.source_blake3.as_str()),
         "self_affine": fit,
         "density_convention": CONVENTION,
-        "texture_aspect": texture.map(Texture::aspect),
+        "texture_aspect": texture.map(|of| of.aspect()),
         "texture_slope_ratio": texture.map(|of| of.slope_ratio),
         "texture_str": texture.map(|of| of.aspect_ratio_str),
         "texture_direction_rad": texture.map(|of| of.direction_rad),
@@ -148,13 +147,11 @@ fn roughness(of: &Statistics<'_>) -> Vec<Line> {
 
 /// Aspect ratio of the texture.
 fn texture(header: &SurfaceHeader) -> Vec<Line> {
-    let line = |of: &Texture| {
-        let (aspect, ratio) = (significant(of.aspect(), 3), significant(of.slope_ratio, 3));
-        let (str, direction) = (significant(of.aspect_ratio_str, 2), of.direction_rad.to_degrees());
-        let ridges = format!("rms slope smallest at {direction:.0}° from x to y");
-        vec![("texture", format!("aspect ratio {aspect}: rms slopes {ratio}, Str {str} (ISO 25178)")), ("", ridges)]
-    };
-    header.measured.as_ref().and_then(|of| of.texture.as_ref()).map(line).unwrap_or_default()
+    let Some(of) = header.measured.as_ref().and_then(|of| of.texture.as_ref()) else { return Vec::new() };
+    let (aspect, ratio) = (significant(of.aspect(), 3), significant(of.slope_ratio, 3));
+    let (str, direction) = (significant(of.aspect_ratio_str, 2), of.direction_rad.to_degrees());
+    let ridges = format!("rms slope smallest at {direction:.0}° from x to y");
+    vec![("texture", format!("aspect ratio {aspect}: rms slopes {ratio}, Str {str} (ISO 25178)")), ("", ridges)]
 }
 
 /// Warning of a texture beyond the limit.

@@ -38,7 +38,7 @@ struct Of<'a> {
 /// The error by which cycles on a measured surface fail; nothing for one whose asperities are not known.
 pub(super) fn refusal(params: &CaseParams, options: &AsperityOptions, known: &Known) -> Option<StageError> {
     let scale = Scale { length_m: known.header.length_m, rms_height_m: known.header.rms_height_m };
-    checked(Of { params, options }, scale, &known.found()?.summits).err()
+    checked(Of { params, options }, scale, &known.found()?.found.list).err()
 }
 
 /// The asperity model of a case on the asperities of a table.
@@ -84,6 +84,9 @@ pub(super) fn run(task: &CycleTask<'_>, options: &AsperityOptions) -> Result<Com
         load_unit_n,
         area_m2,
         rms_height_m,
+        summits,
+        adhesionless: Vec::new(),
+        per_wavelength: None,
     })
 }
 

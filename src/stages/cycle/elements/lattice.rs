@@ -22,6 +22,33 @@ pub(in crate::stages) struct Lattice {
     pub(in crate::stages) is_mirrored: bool,
 }
 
+/// Square of a surface with its shortest wavelength.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::stages) struct Square {
+    /// Side \[m\].
+    pub(in crate::stages) length_m: f64,
+    /// Shortest wavelength; of a measured surface the cut-off \[m\].
+    pub(in crate::stages) shortest_wavelength_m: f64,
+    /// True if the surface continues periodically.
+    pub(in crate::stages) is_periodic: bool,
+}
+
+impl Square {
+    /// Square of a surface of a case with this header.
+    pub(in crate::stages) fn of(params: &CaseParams, header: &SurfaceHeader) -> Self {
+        let of_generated = |surface: &GeneratedSurface| header.length_m / f64::from(surface.magnification);
+        let of_measured = || header.measured.as_ref().map_or(header.length_m, |measured| measured.shortest_wavelength_m);
+        let shortest_wavelength_m = params.surface.generated().map_or_else(of_measured, of_generated);
+        Self { length_m: header.length_m, shortest_wavelength_m, is_periodic: header.periodic }
+    }
+
+    /// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
+    pub(super) fn extent(self) -> (f64, f64) {
+        let length_m = if self.is_periodic { self.length_m } else { 2.0 * self.length_m };
+        (length_m, length_m / self.shortest_wavelength_m)
+    }
+}
+
 impl Lattice {
     /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
     fn of(of: Of<'_>, (length_m, wavelengths): (f64, f64)) -> Self {
@@ -40,15 +67,15 @@ impl Lattice {
         Self::of(of, (surface.length_m, f64::from(surface.magnification)))
     }
 
-    /// The grid of a case on a surface with this header.
-    pub(super) fn of_header(of: Of<'_>, header: &SurfaceHeader) -> Self {
-        Self::of(of, extent(header, of.params))
+    /// The grid of a case on a measured surface.
+    pub(super) fn of_measured(of: Of<'_>, square: Square) -> Self {
+        Self::of(of, square.extent())
     }
 }
 
 /// The grid of a case on a surface with this header and rms height \[m\], checked.
 pub(super) fn checked_lattice(of: Of<'_>, header: &SurfaceHeader, rms_height_m: f64) -> Result<Lattice, StageError> {
-    let (length_m, wavelengths) = extent(header, of.params);
+    let (length_m, wavelengths) = Square::of(of.params, header).extent();
     let (elements, loads) = (of.options, of.params.cycle.max_load.len());
     if let Some((problem, help)) = elements.refusal(length_m, wavelengths, of.params.material.adhesion_length_m()) {
         return Err(PhysicsError::Surface { problem, help }.into());
@@ -65,15 +92,6 @@ pub(super) fn checked_lattice(of: Of<'_>, header: &SurfaceHeader, rms_height_m: 
         return Err(PhysicsError::Surface { problem, help: "use an even number of boundary_elements.points" }.into());
     }
     Ok(lattice)
-}
-
-/// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
-pub(super) fn extent(header: &SurfaceHeader, params: &CaseParams) -> (f64, f64) {
-    let of_measured = header.measured.as_ref().map_or(header.length_m, |measured| measured.shortest_wavelength_m);
-    let of_generated = |surface: &GeneratedSurface| header.length_m / f64::from(surface.magnification);
-    let shortest = params.surface.generated().map_or(of_measured, of_generated);
-    let length_m = if header.periodic { header.length_m } else { 2.0 * header.length_m };
-    (length_m, length_m / shortest)
 }
 
 /// Refuses a grid for which there is not enough memory.

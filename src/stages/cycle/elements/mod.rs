@@ -8,7 +8,7 @@ mod slow_grid;
 
 pub(in crate::stages) use announced::announced;
 pub(super) use cost::{LONG, OF_POINTS};
-pub(in crate::stages) use lattice::Lattice;
+pub(in crate::stages) use lattice::{Lattice, Square};
 
 use super::super::StageError;
 use super::super::cost::Cost;
@@ -20,12 +20,12 @@ use crate::model::{ElementOptions, SurfaceSource};
 use crate::physics::cycle::{Cycle, Map, Method};
 use crate::physics::elements::path::cycle::Turning;
 use crate::physics::elements::{Elements, FreeStep};
+use crate::physics::theory::approximate_jkr::CurvePoint;
 use crate::schema;
 use crate::spec::CaseParams;
-use crate::store::hdf5::SurfaceHeader;
 use crate::store::{ContactMap, Frame, MapsHeader, read_halfway, write_maps, write_state};
 use lattice::{checked_lattice, enough_memory};
-use setup::setup;
+use setup::{Setup, setup};
 use std::path::{Path, PathBuf};
 
 /// A case of boundary elements.
@@ -36,12 +36,11 @@ pub(super) struct Of<'a> {
 }
 
 impl Of<'_> {
-    /// Grid of a case on a generated surface, or on one whose file has this header; nothing for a measured one without.
-    pub(super) fn lattice(self, header: Option<&SurfaceHeader>) -> Option<Lattice> {
-        match (header, &self.params.surface) {
-            (Some(header), SurfaceSource::Measured(_)) => Some(Lattice::of_header(self, header)),
-            (_, SurfaceSource::Generated(surface)) => Some(Lattice::of_generated(self, surface)),
-            (None, SurfaceSource::Measured(_)) => None,
+    /// Grid of a case on a generated surface, or on the square of a measured one; nothing without it.
+    pub(super) fn lattice(self, square: Option<Square>) -> Option<Lattice> {
+        match &self.params.surface {
+            SurfaceSource::Generated(surface) => Some(Lattice::of_generated(self, surface)),
+            SurfaceSource::Measured(_) => Some(Lattice::of_measured(self, square?)),
         }
     }
 
@@ -52,12 +51,12 @@ impl Of<'_> {
 
     /// Memory and time of a cycle at a ratio `U_el/Δγ`, on a generated surface or on a measured one that is known.
     pub(super) fn cost(self, known: Option<&Known>, ratio: Option<f64>) -> Option<Cost> {
-        let lattice = self.lattice(known.map(|known| &known.header))?;
+        let lattice = self.lattice(known.map(|known| Square::of(self.params, &known.header)))?;
         let of_generated = self.params.surface.generated().map(|surface| surface.rms_height_m);
         let rms_height_m = of_generated.or_else(|| known.map(|known| known.header.rms_height_m))?;
         let range_steps = self.range_steps(&lattice, rms_height_m).unwrap_or_default();
         let cost = cost::cost(&lattice, self.params.cycle.max_load.len(), ratio, range_steps);
-        let shortest = known.and_then(Known::found).map_or(1.0, |found| found.shortest);
+        let shortest = known.and_then(Known::found).map_or(1.0, |found| found.estimates.per_shortest_wavelength(1.0));
         Some(Cost { per_wavelength: shortest * cost.per_wavelength, ..cost })
     }
 
@@ -77,7 +76,7 @@ impl Of<'_> {
 /// Computes a cycle.
 pub(super) fn run(task: &CycleTask<'_>, options: &ElementOptions) -> Result<Computed, StageError> {
     let (campaign, unit) = (task.campaign, task.unit);
-    let method = setup(campaign, unit, Of { params: task.params(), options })?;
+    let Setup { method, summits, per_wavelength } = setup(campaign, unit, Of { params: task.params(), options })?;
     let cycle = task.follow(&method)?;
     let (size, units, dir) = (method.size(), method.units, campaign.cycle_dir(unit));
     let contact_gap_m = method.problem.law.contact_gap() * units.spacing_m();
@@ -100,6 +99,9 @@ pub(super) fn run(task: &CycleTask<'_>, options: &ElementOptions) -> Result<Comp
         load_unit_n: units.modulus_pa * length_m * length_m,
         area_m2: length_m * length_m,
         rms_height_m: units.rms_height_m,
+        summits,
+        adhesionless: free.iter().map(|step| curve_point(step, units.modulus_pa)).collect(),
+        per_wavelength: Some(per_wavelength),
     })
 }
 
@@ -114,6 +116,11 @@ fn adhesionless(of: Identity<'_>, steps: &[FreeStep]) -> Result<Frame, StageErro
         .bool("converged", steps.iter().map(|step| step.is_converged))
         .count("transform_count", steps.iter().map(|step| step.transforms as usize))
         .build()?)
+}
+
+/// Point of the adhesionless curve, with E* \[Pa\].
+fn curve_point(step: &FreeStep, modulus_pa: f64) -> CurvePoint {
+    CurvePoint { penetration_m: step.approach_m, load_m2: step.load_n / modulus_pa, area_m2: step.area_m2 }
 }
 
 /// Maps as they are stored, with the load at their reversal.
@@ -157,7 +164,7 @@ pub(super) fn unload_again(
     max_load: f64,
 ) -> Result<Cycle<()>, StageError> {
     let params = &campaign.cases[unit.case].case.params;
-    let method = setup(campaign, unit, Of { params, options })?;
+    let Setup { method, .. } = setup(campaign, unit, Of { params, options })?;
     let path = turning_path(&campaign.cycle_dir(unit));
     let states: Option<Vec<Turning>> = read_halfway(&path, &unit.key).and_then(|bytes| postcard::from_bytes(&bytes).ok());
     let reversal = params.cycle.max_load.iter().position(|load| *load == max_load);

@@ -4,7 +4,7 @@ use super::super::super::StageError;
 use super::super::super::extract::read_summits;
 use super::super::super::surface::scale;
 use super::Of;
-use super::lattice::{checked_lattice, extent};
+use super::lattice::{Lattice, Square, checked_lattice};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::{Attraction as Rule, Material, Nucleation, Opening};
 use crate::physics::PhysicsError;
@@ -15,16 +15,24 @@ use crate::physics::surface::summits::Summit;
 use crate::store::hdf5::read_surface;
 
 /// The surface of a cycle on the grid of its case.
-pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit, of: Of<'_>) -> Result<Elements, StageError> {
+pub(super) struct Setup {
+    pub(super) method: Elements,
+    pub(super) summits: Vec<Summit>,
+    /// Grid points per cut-off wavelength.
+    pub(super) per_wavelength: f64,
+}
+
+/// Reads the surface of a cycle and sets the method up.
+pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit, of: Of<'_>) -> Result<Setup, StageError> {
     let params = of.params;
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
-    let list = read_summits(&campaign.asperities_path(surface))?;
-    let (length_m, wavelengths) = extent(&header, params);
+    let summits = read_summits(&campaign.asperities_path(surface))?;
+    let (length_m, wavelengths) = Square::of(params, &header).extent();
     let rms_height_m = scale(campaign, surface)?.rms_height_m;
     let lattice = checked_lattice(of, &header, rms_height_m)?;
     let attraction = match of.options.attraction {
-        Rule::Bonded { nucleation, opening } => bonded(&params.material, &list, (nucleation, opening))?,
+        Rule::Bonded { nucleation, opening } => bonded(&params.material, &summits, (nucleation, opening))?,
         Rule::Range { .. } => Attraction::Range { range_m: lattice.range_m.unwrap_or_default() },
     };
     let (elements, shortest_wavelength_m) = (of.options, length_m / wavelengths);
@@ -40,7 +48,9 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit, of: Of<'_>) -> Result
     let (length_m, is_periodic) = (header.length_m, header.periodic);
     let map = HeightMap { heights_m: heights.view(), length_m, is_periodic, shortest_wavelength_m, rms_height_m };
     let method = Elements::new(&map, &params.material, &params.cycle.max_load, &options)?;
-    Ok(method.with_summits(list.iter().map(|summit| [summit.x_m, summit.y_m])))
+    let method = method.with_summits(summits.iter().map(|summit| [summit.x_m, summit.y_m]));
+    let by_spectrum = params.surface.generated().map_or(lattice, |surface| Lattice::of_generated(of, surface));
+    Ok(Setup { method, summits, per_wavelength: by_spectrum.per_wavelength })
 }
 
 /// The JKR limit of a case on a surface with these asperities.
