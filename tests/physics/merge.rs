@@ -7,11 +7,13 @@ use crate::support::{
 use hysteron::model::{Coalescence, Interaction, KeptContacts, Material};
 use hysteron::physics::EventKind;
 use hysteron::physics::LoopError;
+use hysteron::physics::SpotStatus;
 use hysteron::physics::asperities::contact::{Problem, Rules, State};
 use hysteron::physics::asperities::{Asperities, Cycle, Settings};
 use hysteron::physics::cycle::{Merged, Method};
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::summits::Summit;
+use std::collections::BTreeSet;
 
 const MERGE: Rules = Rules { coalescence: Coalescence::Merge, ..DEFAULT };
 const MERGE_ALONE: Rules = Rules { coalescence: Coalescence::Merge, ..ALONE };
@@ -130,6 +132,33 @@ fn law_area_and_load_are_continuous_at_every_merger() {
             compared += 1;
         }
         assert!(compared > 20, "{compared}");
+    }
+}
+
+#[test]
+fn law_contacts_follow_from_the_status_after_events() {
+    let without = Material { work_of_adhesion_j_m2: 0.0, ..PAPER };
+    for (rules, material) in [(MERGE, PAPER), (MERGE, without), (DEFAULT, PAPER), (DEFAULT, without)] {
+        let problem = Problem::new(&paper_summits(16, 0), LENGTH, RMS, material, rules).unwrap();
+        let cycle = run(&problem, &[0.0071], 0.04, KeptContacts::All);
+        let mut events = cycle.events.iter().peekable();
+        let mut inside = BTreeSet::new();
+        for step in 0..cycle.steps.len() {
+            while let Some(event) = events.next_if(|event| event.step == step) {
+                let number = event.asperity().unwrap();
+                let merged = cycle.merged.iter().find(|of| of.asperity == number);
+                let parts = merged.map_or(vec![], |of| of.spot.parts.to_vec());
+                inside.retain(|i| *i != number && !parts.contains(i));
+                match event.status.unwrap() {
+                    SpotStatus::Contact => inside.extend([number]),
+                    SpotStatus::Split => inside.extend(parts),
+                    SpotStatus::Free | SpotStatus::Covered | SpotStatus::Merged => {}
+                }
+            }
+            let spots = cycle.contacts.iter().filter(|spot| spot.step == step && !spot.covered);
+            assert_eq!(inside, spots.filter_map(|spot| spot.asperity).collect(), "step {step}");
+        }
+        assert!(events.next().is_none() && inside.is_empty());
     }
 }
 

@@ -18,10 +18,7 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
     let others: Vec<usize> = cycle.turning[..k].iter().map(|(step, _)| *step).collect();
     let work_j = cycle.steps[reversal].work_j;
     let avalanches = cycle.events.iter().filter(|event| event.step <= reversal).map(|event| event.avalanche).max().unwrap_or(0);
-    let mut undone_at: Vec<Vec<Event>> = vec![Vec::new(); reversal + 1];
-    for event in undo(&cycle.events, reversal, avalanches) {
-        undone_at[event.step].push(event);
-    }
+    let mut reverse = undo(&cycle.events, reversal, avalanches);
     let mut pending: Vec<Event> = Vec::new();
     let mut least_load_n = f64::INFINITY;
     for at in (0..=reversal).rev() {
@@ -42,7 +39,7 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
                 return;
             }
         }
-        pending.extend(undone_at[at].drain(..).rev());
+        pending.extend(std::iter::from_fn(|| reverse.pop_if(|event| event.step == at)));
     }
 }
 
