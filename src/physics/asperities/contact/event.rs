@@ -12,7 +12,7 @@ pub struct Event {
     /// Asperity that changes state.
     pub asperity: usize,
     /// Mean penetration Δ \[m\] at the event.
-    pub approach_m: f64,
+    pub mean_penetration_m: f64,
     /// Number of its avalanche, counted along the branch.
     pub avalanche: u64,
     /// Load and area before the event.

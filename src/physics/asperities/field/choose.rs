@@ -169,7 +169,7 @@ impl Interaction for FieldSum {
         self.for_spots(spots, SumPrecision::Full).linearise(spots, displacements, tangent, effort);
     }
 
-    fn approach(
+    fn along_path(
         &self,
         spots: &Spots,
         rates: &[f64],
@@ -178,6 +178,6 @@ impl Interaction for FieldSum {
         kept: &mut Tangent,
         effort: &mut Effort,
     ) {
-        self.for_targets(spots, targets, SumPrecision::Full).approach(spots, rates, targets, found, kept, effort);
+        self.for_targets(spots, targets, SumPrecision::Full).along_path(spots, rates, targets, found, kept, effort);
     }
 }

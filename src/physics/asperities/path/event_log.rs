@@ -28,7 +28,7 @@ pub(crate) struct EventLog {
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(crate) struct LoadSegment {
     /// Mean penetration and load at its end \[m, N\].
-    pub(crate) approach: f64,
+    pub(crate) mean_penetration: f64,
     pub(crate) load: f64,
     /// Smallest load on it \[N\].
     pub(crate) least: f64,
@@ -48,7 +48,7 @@ impl EventLog {
     }
 
     /// Records the transitions of one relaxation; the first has its energy.
-    pub(crate) fn record(&mut self, moved: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
+    pub(crate) fn record(&mut self, moved: &[Transition], mean_penetration: f64, before: Totals, after: Totals, energy: f64) {
         if moved.is_empty() {
             return;
         }
@@ -56,30 +56,30 @@ impl EventLog {
         self.charged = self.events.len();
         for (k, change) in moved.iter().enumerate() {
             let (from, energy) = if k == 0 { (before, energy) } else { (after, 0.0) };
-            self.enter(change, approach, from, after, energy);
+            self.enter(change, mean_penetration, from, after, energy);
         }
     }
 
     /// Records a transition without a change of load; later charges still belong to the last relaxation.
-    pub(crate) fn note(&mut self, change: Transition, approach: f64, totals: Totals) {
+    pub(crate) fn note(&mut self, change: Transition, mean_penetration: f64, totals: Totals) {
         self.avalanches += u64::from(std::mem::take(&mut self.fresh));
-        self.enter(&change, approach, totals, totals, 0.0);
+        self.enter(&change, mean_penetration, totals, totals, 0.0);
     }
 
-    fn enter(&mut self, change: &Transition, approach_m: f64, before: Totals, after: Totals, energy_lost_j: f64) {
+    fn enter(&mut self, change: &Transition, mean_penetration_m: f64, before: Totals, after: Totals, energy_lost_j: f64) {
         let (kind, asperity, avalanche) = (change.kind, change.asperity, self.avalanches);
-        self.events.push(Event { kind, asperity, approach_m, avalanche, before, after, energy_lost_j });
+        self.events.push(Event { kind, asperity, mean_penetration_m, avalanche, before, after, energy_lost_j });
     }
 
     /// Ends a segment without a jump of the load, which is known at its ends only.
-    pub(crate) fn pass(&mut self, approach: f64, load: f64) {
-        self.segments.push(LoadSegment { approach, load, least: load.min(self.last) });
+    pub(crate) fn pass(&mut self, mean_penetration: f64, load: f64) {
+        self.segments.push(LoadSegment { mean_penetration, load, least: load.min(self.last) });
         self.last = load;
     }
 
     /// Begins a segment after a jump of the load.
-    pub(crate) fn restart(&mut self, approach: f64, load: f64) {
-        self.segments.push(LoadSegment { approach, load, least: load });
+    pub(crate) fn restart(&mut self, mean_penetration: f64, load: f64) {
+        self.segments.push(LoadSegment { mean_penetration, load, least: load });
         self.last = load;
     }
 

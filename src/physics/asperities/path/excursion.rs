@@ -23,7 +23,7 @@ impl EquilibriumPath {
             None => other.restore(&self.checkpoint()),
         }
         other.chatter.clear_frozen();
-        while other.state().approach_m != target {
+        while other.state().mean_penetration_m != target {
             other.step(Some(target))?;
         }
         Ok(other)
@@ -32,12 +32,12 @@ impl EquilibriumPath {
     /// The part of the last increment in which the load reaches `load` \[N\].
     fn crossing(&self, load: f64) -> Option<Crossing> {
         let checkpoint = self.checkpoint.as_deref()?;
-        let mut before = (checkpoint.state().approach_m, checkpoint.totals.load_n);
+        let mut before = (checkpoint.state().mean_penetration_m, checkpoint.totals.load_n);
         for segment in &self.log.segments[checkpoint.segments..] {
             if segment.load >= load {
-                return Some(Crossing { ends: [before.0, segment.approach], excess: [before.1 - load, segment.load - load] });
+                return Some(Crossing { ends: [before.0, segment.mean_penetration], excess: [before.1 - load, segment.load - load] });
             }
-            before = (segment.approach, segment.load);
+            before = (segment.mean_penetration, segment.load);
         }
         None
     }
@@ -45,7 +45,7 @@ impl EquilibriumPath {
     /// The first state of the last increment with a load \[N\], on an excursion; none where only the predictor had it.
     pub(crate) fn turning(&mut self, load: f64) -> Result<Option<Self>, PhysicsError> {
         if self.checkpoint.is_none() && self.totals.load_n >= load {
-            return self.excursion(self.state().approach_m).map(Some);
+            return self.excursion(self.state().mean_penetration_m).map(Some);
         }
         let Some(Crossing { ends: [mut low, mut high], excess: [under, over] }) = self.crossing(load) else { return Ok(None) };
         let tolerance = self.numerics().steps.load_tolerance;
@@ -78,7 +78,7 @@ impl EquilibriumPath {
     /// The state of the last increment at a mean penetration or soon after it with a load of at least `load` \[N\]: an excursion may meet a
     /// jump a little later than the increment did. Without one, the state with the largest load.
     fn reaching(&mut self, mut at: f64, load: f64) -> Result<Self, PhysicsError> {
-        let (end, sense) = (self.state().approach_m, self.frame.sense);
+        let (end, sense) = (self.state().mean_penetration_m, self.frame.sense);
         let mut further = self.numerics().steps.load_tolerance * self.problem().rms_height_m;
         let mut best = self.excursion(at)?;
         self.solver.effort += best.effort();

@@ -10,7 +10,7 @@ use crate::event_kind::EventKind;
 /// Transition that is expected, with its mean penetration \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PredictedEvent {
-    pub(crate) approach: f64,
+    pub(crate) mean_penetration: f64,
     pub(crate) transition: Transition,
 }
 
@@ -30,7 +30,7 @@ impl Predictor {
             let ends = start + 1.1 * (end - start);
             if (start >= 0.0 || ends >= 0.0) && !due.iter().any(|event| event.transition == transition) {
                 let share = if start >= 0.0 { 0.0 } else { (start / (start - end)).clamp(0.0, 1.0) };
-                due.push(PredictedEvent { approach: at + sign * share * ((target - at) * sign).max(0.0), transition });
+                due.push(PredictedEvent { mean_penetration: at + sign * share * ((target - at) * sign).max(0.0), transition });
             }
         }
     }
@@ -59,7 +59,7 @@ impl Predictor {
         // A curved way may end a little earlier than a straight one.
         if (left > 0.0 && speed > 0.0 || way == 0.0) && way <= 1.1 * left {
             due.push(PredictedEvent {
-                approach: trace.at + sign * way,
+                mean_penetration: trace.at + sign * way,
                 transition: Transition { kind: EventKind::JumpIn, asperity: i, by: None },
             });
         }
@@ -71,7 +71,7 @@ impl Predictor {
         let speed = sign * trace.rate;
         let left = (target - trace.at) * sign;
         let mut offer = |way: f64, kind: EventKind, i: usize, by: Option<usize>| {
-            due.push(PredictedEvent { approach: trace.at + sign * way.max(0.0), transition: Transition { kind, asperity: i, by } });
+            due.push(PredictedEvent { mean_penetration: trace.at + sign * way.max(0.0), transition: Transition { kind, asperity: i, by } });
         };
         if speed < 0.0 {
             let way = (penetration - asperity.jump_off_penetration()) / -speed;

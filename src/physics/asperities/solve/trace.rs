@@ -83,17 +83,17 @@ impl PenetrationTrace {
     }
 
     /// The trace moved to another mean penetration \[m\], with its rate.
-    pub(crate) fn moved_to(&self, approach: f64) -> Self {
-        Self { at: approach, value: self.ahead(approach), ..*self }
+    pub(crate) fn moved_to(&self, mean_penetration: f64) -> Self {
+        Self { at: mean_penetration, value: self.ahead(mean_penetration), ..*self }
     }
 
     /// Predicted penetration at a mean penetration \[m\]: not a number if it is unknown.
-    pub(crate) fn ahead(&self, approach: f64) -> f64 {
-        self.value + self.rate.clamp(-MAX_RATE, MAX_RATE) * (approach - self.at)
+    pub(crate) fn ahead(&self, mean_penetration: f64) -> f64 {
+        self.value + self.rate.clamp(-MAX_RATE, MAX_RATE) * (mean_penetration - self.at)
     }
 
     /// Predicted contact radius \[m\].
-    pub(crate) fn radius_ahead(&self, asperity: &Asperity, approach: f64) -> f64 {
-        asperity.radius_ahead(self.ahead(approach))
+    pub(crate) fn radius_ahead(&self, asperity: &Asperity, mean_penetration: f64) -> f64 {
+        asperity.radius_ahead(self.ahead(mean_penetration))
     }
 }

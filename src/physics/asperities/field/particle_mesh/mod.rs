@@ -217,7 +217,7 @@ impl Interaction for FastSum {
         }
     }
 
-    fn approach(
+    fn along_path(
         &self,
         spots: &Spots,
         rates: &[f64],
