@@ -12,7 +12,7 @@ use super::fault::Faults;
 use super::written::{Written, array};
 use super::{Axis, CaseParams, Spec, SpecErrors, Sweep, Value};
 use crate::model::{Choice as _, JumpIn, Method};
-use crate::physics::jkr::{Asperity, LEAST_TABOR};
+use crate::physics::jkr::{Asperity, MIN_TABOR};
 use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::theory::flattening::flattening;
 use crate::physics::theory::regime::Regime;
@@ -101,7 +101,7 @@ fn of_target(params: &CaseParams) -> Method {
     let method = Regime::expected(&energy, adhesion, params.cycle.largest_load(), moments.rms_slope()).method();
     let needs_range = adhesion > 0.0 && params.model.jump_in == JumpIn::Wu && !params.model.allow_low_tabor;
     let sharpest = || Asperity::new(1.0 / (SHARPEST * moments.rms_curvature_1_m()), &params.material);
-    let is_low = |asperity: Asperity| asperity.tabor(params.material.interaction_range_m) < LEAST_TABOR;
+    let is_low = |asperity: Asperity| asperity.tabor(params.material.interaction_range_m) < MIN_TABOR;
     let is_out_of_range = || needs_range && sharpest().is_ok_and(is_low);
     if method == Method::Asperities && is_out_of_range() { Method::BoundaryElements } else { method }
 }

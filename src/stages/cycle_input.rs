@@ -7,7 +7,7 @@ use super::surface::{scale, target};
 use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
 use crate::model::Material;
 use crate::physics::jkr::Asperity;
-use crate::physics::jkr::LEAST_TABOR;
+use crate::physics::jkr::MIN_TABOR;
 use crate::physics::surface::spectrum::Moments;
 use crate::physics::surface::summits::Summit;
 use crate::physics::surface::synthesis::realization_seed;
@@ -136,7 +136,7 @@ fn asperities(summits: &[Summit], material: &Material) -> Result<Vec<Asperity>, 
 fn asperity_columns(summits: &[Summit], material: &Material) -> Result<Given, StageError> {
     let mut tabor: Vec<f64> = asperities(summits, material)?.iter().map(|asperity| asperity.tabor(material.interaction_range_m)).collect();
     tabor.sort_by(f64::total_cmp);
-    let low = tabor.iter().filter(|number| **number < LEAST_TABOR).count();
+    let low = tabor.iter().filter(|number| **number < MIN_TABOR).count();
     let over_all = |sum: f64| (!tabor.is_empty()).then(|| sum / tabor.len() as f64);
     let heights: Vec<f64> = summits.iter().map(|s| s.height_m).collect();
     let radii: f64 = summits.iter().map(Summit::radius_m).sum();

@@ -2,7 +2,7 @@
 
 use crate::model::Material;
 use crate::physics::jkr::Asperity;
-use crate::physics::jkr::LEAST_TABOR;
+use crate::physics::jkr::MIN_TABOR;
 use crate::physics::theory::flattening::Flattening;
 use crate::physics::theory::regime::FLATTENED;
 use crate::spec::CaseParams;
@@ -84,9 +84,9 @@ impl Range {
         let material = Material { contact_modulus_pa: modulus, work_of_adhesion_j_m2: ADHESION_J_M2, interaction_range_m: range_m };
         let asperity = self.radius_m.and_then(|radius| Asperity::new(radius, &material).ok());
         let tabor = asperity.map(|asperity| asperity.tabor(range_m));
-        let jump_in = tabor.filter(|tabor| *tabor < LEAST_TABOR).map(|tabor| {
-            format!("jump_in = \"jkr\"      # Tabor parameter μ ≥ {}; \"wu\" requires {LEAST_TABOR}\n", significant(tabor, 2))
-        });
+        let jump_in = tabor
+            .filter(|tabor| *tabor < MIN_TABOR)
+            .map(|tabor| format!("jump_in = \"jkr\"      # Tabor parameter μ ≥ {}; \"wu\" requires {MIN_TABOR}\n", significant(tabor, 2)));
         let boundary = (!periodic).then(|| "boundary = \"isolated\"\n".to_owned());
         let model: Vec<String> = [boundary, jump_in].into_iter().flatten().collect();
         if !model.is_empty() {

@@ -20,9 +20,9 @@ pub(super) const MIN_ASPERITIES: usize = 300;
 
 /// Errors of the fast sum relative to the largest displacement.
 ///
-/// `TOLERANCE` is for equilibria, `ROUGH_TOLERANCE` for intermediate solutions.
+/// `TOLERANCE` is for equilibria, `INTERMEDIATE_TOLERANCE` for intermediate solutions.
 pub(super) const TOLERANCE: f64 = 1e-8;
-pub(super) const ROUGH_TOLERANCE: f64 = 1e-6;
+pub(super) const INTERMEDIATE_TOLERANCE: f64 = 1e-6;
 
 /// Precision of equilibria where all sums are direct.
 pub(super) const DIRECT_TOLERANCE: f64 = 1e-10;
@@ -34,7 +34,7 @@ pub(super) const DIRECT_TOLERANCE: f64 = 1e-10;
 pub fn choose(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> FieldSum {
     let many = positions.len() >= MIN_ASPERITIES && matches!(kind, Kind::Spots | Kind::Point);
     let to = |tolerance| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, tolerance);
-    let fast = many.then(|| PerPrecision { full: to(TOLERANCE), rough: to(ROUGH_TOLERANCE) });
+    let fast = many.then(|| PerPrecision { full: to(TOLERANCE), rough: to(INTERMEDIATE_TOLERANCE) });
     let many = if boundary == Boundary::Periodic { FAST_FROM_PERIODIC } else { FAST_FROM_ISOLATED };
     let full = DirectSum::new(positions, length_m, material, kind, boundary, slips);
     let rough = full.to_six_digits();

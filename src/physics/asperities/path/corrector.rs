@@ -1,6 +1,6 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
-use super::accuracy::Arrival;
+use super::arrival::Arrival;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;

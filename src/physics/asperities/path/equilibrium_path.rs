@@ -1,6 +1,6 @@
 //! State of a path, and its increments.
 
-use super::accuracy::Arrival;
+use super::arrival::Arrival;
 use super::chatter::ChatterGuard;
 use super::checkpoint::Checkpoint;
 use super::energy::EnergyLedger;

@@ -1,6 +1,6 @@
 //! Checkpoints of a path, taken and resumed.
 
-use super::accuracy::Arrival;
+use super::arrival::Arrival;
 use super::checkpoint::{Checkpoint, PathCheckpoint};
 use super::energy::EnergyLedger;
 use super::equilibrium_path::{EquilibriumPath, Frame};

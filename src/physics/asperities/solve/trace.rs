@@ -17,7 +17,7 @@ pub(crate) struct PenetrationTrace {
 const MAX_RATE: f64 = 4.0;
 
 /// Lower bound of |dδ/da|, against division by zero at the end of the branch.
-const LEAST_SLOPE: f64 = 1e-6;
+const MIN_SLOPE: f64 = 1e-6;
 
 impl PenetrationTrace {
     /// Penetration \[m\] at a mean penetration \[m\], with its rate.
@@ -39,7 +39,7 @@ impl PenetrationTrace {
     /// the opposite sign.
     pub(crate) fn speed(&self, asperity: &Asperity, a: f64) -> f64 {
         let slope = asperity.penetration_slope(a);
-        self.rate / if slope.abs() < LEAST_SLOPE { LEAST_SLOPE.copysign(slope) } else { slope }
+        self.rate / if slope.abs() < MIN_SLOPE { MIN_SLOPE.copysign(slope) } else { slope }
     }
 
     /// [`Self::speed`] with a bounded rate.
