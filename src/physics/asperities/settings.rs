@@ -18,8 +18,8 @@ pub struct Settings {
     pub contacts: KeptContacts,
     /// Interval of mean penetration, in rms heights, between checkpoints.
     ///
-    /// `None` for a run without checkpoints.
-    /// At a checkpoint the path restarts from the stored state, so that another process can continue it.
+    /// `None` for a run without checkpoints. At a checkpoint the path restarts from the stored state, so that
+    /// another process can continue it.
     pub rest_every: Option<f64>,
 }
 
