@@ -88,7 +88,6 @@ impl Recorder {
                 self.record(settings, path, None, cycle, StepReason::GridPoint);
             } else {
                 let excursion = path.excursion(next)?;
-                path.add_effort(excursion.effort());
                 self.record(settings, path, Some(&excursion), cycle, StepReason::GridPoint);
             }
         }

@@ -47,7 +47,7 @@ pub enum SumPrecision {
     /// That of an equilibrium: a direct sum is exact.
     Full,
     /// Six digits, for intermediate solutions.
-    Rough,
+    Intermediate,
 }
 
 /// A method of summation in both precisions.
@@ -61,7 +61,7 @@ impl<T> PerPrecision<T> {
     fn of(&self, precision: SumPrecision) -> &T {
         match precision {
             SumPrecision::Full => &self.full,
-            SumPrecision::Rough => &self.rough,
+            SumPrecision::Intermediate => &self.rough,
         }
     }
 }
@@ -83,7 +83,7 @@ impl FieldSum {
 
     /// Sum for targets that are the spots themselves.
     ///
-    /// [`SumPrecision::Rough`] allows an error of 1e-6 if the fast sum is used; the direct sum is exact.
+    /// [`SumPrecision::Intermediate`] allows an error of 1e-6 if the fast sum is used; the direct sum is exact.
     pub(crate) fn for_spots(&self, spots: &Spots, precision: SumPrecision) -> &dyn Interaction {
         match &self.fast {
             Some(fast) if spots.columns.len() >= self.many => fast.of(precision),
@@ -137,7 +137,7 @@ impl FieldSum {
         self.direct.full.at_one(spots, target)
     }
 
-    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`]. Rough sums have six digits of the image sums.
+    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`]. Intermediate sums have six digits of the image sums.
     pub(crate) fn rows(
         &self,
         spots: &Spots,

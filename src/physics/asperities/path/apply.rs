@@ -53,7 +53,7 @@ impl EquilibriumPath {
         let mut applied = vec![entered];
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         let start = local.radius.clone();
-        if !(local.solve(problem, Hold::Approach, effort).is_ok() && local.rates(problem).1) {
+        if !(local.solve(problem, Hold::MeanPenetration, effort).is_ok() && local.rates(problem).1) {
             local.radius = start;
             match local.relax(problem, uncovers.then_some(&transition), effort) {
                 Ok(further) => applied.extend(further),

@@ -104,11 +104,6 @@ impl EquilibriumPath {
         self.solver.effort
     }
 
-    /// Adds the effort of an excursion.
-    pub(crate) fn add_effort(&mut self, effort: Effort) {
-        self.solver.effort += effort;
-    }
-
     /// True if the state is exact and may be written down.
     pub(crate) fn is_exact(&self) -> bool {
         self.precision == Precision::Exact

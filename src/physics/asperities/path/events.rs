@@ -166,7 +166,7 @@ impl EquilibriumPath {
         }
         let mut go_to = |local: &mut LocalProblem, mean_penetration: f64| {
             local.ahead(problem, mean_penetration);
-            local.solve(problem, Hold::Approach, effort).ok()?;
+            local.solve(problem, Hold::MeanPenetration, effort).ok()?;
             Some(meeting(local))
         };
         let end = go_to(local, high).filter(|end| *end >= 0.0)?;

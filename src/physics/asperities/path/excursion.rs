@@ -14,8 +14,8 @@ struct Crossing {
 }
 
 impl EquilibriumPath {
-    /// A path from before the last increment to `target` within it.
-    pub(crate) fn excursion(&self, target: f64) -> Result<Self, PhysicsError> {
+    /// A path from before the last increment to `target` within it; its effort is counted here.
+    pub(crate) fn excursion(&mut self, target: f64) -> Result<Self, PhysicsError> {
         let steps = StepControl::new(self.numerics().steps, self.frame.sense, self.steps.longest(), 0);
         let mut other = Self::new(self.problem(), self.predictor.clone(), self.frame, steps);
         match self.checkpoint.as_deref() {
@@ -26,6 +26,7 @@ impl EquilibriumPath {
         while other.state().mean_penetration_m != target {
             other.step(Some(target))?;
         }
+        self.solver.effort += other.effort();
         Ok(other)
     }
 
@@ -53,7 +54,6 @@ impl EquilibriumPath {
         for _ in 0..100 {
             let middle = low + ends.share(0.01) * (high - low);
             let trial = self.excursion(middle)?;
-            self.solver.effort += trial.effort();
             let off = trial.totals.load_n - load;
             // A load that jumps over the value reverses where it jumps.
             let closed = (high - low).abs() <= tolerance * self.problem().rms_height_m;
@@ -81,12 +81,10 @@ impl EquilibriumPath {
         let (end, sense) = (self.state().mean_penetration_m, self.frame.sense);
         let mut further = self.numerics().steps.load_tolerance * self.problem().rms_height_m;
         let mut best = self.excursion(at)?;
-        self.solver.effort += best.effort();
         while best.totals.load_n < load && at != end {
             further *= 4.0;
             at = if (end - at) * sense > further { at + sense * further } else { end };
             let trial = self.excursion(at)?;
-            self.solver.effort += trial.effort();
             if trial.totals.load_n > best.totals.load_n {
                 best = trial;
             }

@@ -87,7 +87,7 @@ impl EquilibriumPath {
                 displacement: *displacement,
             })
             .collect();
-        let solved = near.local.solve(problem, Hold::Approach, &mut self.solver.effort).is_ok() && near.local.rates(problem).1;
+        let solved = near.local.solve(problem, Hold::MeanPenetration, &mut self.solver.effort).is_ok() && near.local.rates(problem).1;
         (before, start, solved)
     }
 

@@ -100,7 +100,7 @@ impl NonlinearSystem for Descent<'_> {
         let mut local = self.around(worst.contact.asperity);
         let problem = &*Arc::clone(&self.solver.problem);
         let (start, effort) = (local.radius.clone(), &mut self.solver.effort);
-        let solved = local.solve_with(problem, Hold::Approach, Damping::PATIENT, effort).is_ok() && local.rates(problem).1;
+        let solved = local.solve_with(problem, Hold::MeanPenetration, Damping::PATIENT, effort).is_ok() && local.rates(problem).1;
         if !solved {
             match self.failing {
                 Failing::EndsAtOnce => return Some(Err(worst.contact)),

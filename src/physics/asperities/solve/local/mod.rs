@@ -46,7 +46,7 @@ pub(crate) struct CurveState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
     /// Mean penetration.
-    Approach,
+    MeanPenetration,
     /// Radius of a member, by its position.
     Radius(usize),
     /// Penetration of a watched asperity, by its position \[m\].
@@ -73,7 +73,7 @@ impl Extent {
     fn sums(self) -> SumPrecision {
         match self {
             Self::Whole => SumPrecision::Full,
-            Self::Part => SumPrecision::Rough,
+            Self::Part => SumPrecision::Intermediate,
         }
     }
 }
@@ -231,10 +231,7 @@ impl LocalProblem {
                 - self.field[k]
                 - problem.asperities[i].penetration(self.radius[k]);
             self.residual.push(residual);
-            // A residual that is not a number must not pass as a small one.
-            if residual.is_nan() || residual.abs() > worst.residual_m {
-                worst = NotConverged::residual(residual.abs(), i);
-            }
+            worst = worst.or_residual(residual, i);
         }
         worst
     }
@@ -280,7 +277,7 @@ impl LocalProblem {
         let mut step = self.residual.clone();
         self.assemble(problem, 0.0);
         let mean_penetration = match hold {
-            Hold::Approach => {
+            Hold::MeanPenetration => {
                 self.work.lu.factor(&self.work.matrix, n);
                 self.work.lu.solve(&mut step);
                 0.0
