@@ -64,12 +64,12 @@ pub enum PhysicsError {
 pub enum LoopError {
     /// No equilibrium was found near the last one, not even by relaxation.
     #[error(
-        "no equilibrium at the mean penetration {approach_m:e} m after {iterations} iterations: {} (asperity {asperity})",
+        "no equilibrium at the mean penetration {mean_penetration_m:e} m after {iterations} iterations: {} (asperity {asperity})",
         reason.sentence(*residual_m)
     )]
     NoEquilibrium {
         /// Mean penetration Δ \[m\].
-        approach_m: f64,
+        mean_penetration_m: f64,
         /// Reason.
         reason: Reason,
         /// The largest residual \[m\]; not a number for another reason.
@@ -79,36 +79,36 @@ pub enum LoopError {
         /// Iterations spent.
         iterations: u64,
     },
-    /// Events go on without end within one increment of the approach.
-    #[error("no stable state at the mean penetration {approach_m:e} m after {events} changes of state (asperity {asperity} last)")]
+    /// Events go on without end within one increment of the mean penetration.
+    #[error("no stable state at the mean penetration {mean_penetration_m:e} m after {events} changes of state (asperity {asperity} last)")]
     EndlessAvalanche {
         /// Mean penetration Δ \[m\].
-        approach_m: f64,
+        mean_penetration_m: f64,
         /// Changes of state so far.
         events: usize,
         /// The asperity that changed last.
         asperity: usize,
     },
     /// Full contact at a load reversal, with bonds that open at edges only.
-    #[error("full contact at the mean penetration {approach_m:e} m: there is no edge from which the surfaces can separate")]
+    #[error("full contact at the mean penetration {mean_penetration_m:e} m: there is no edge from which the surfaces can separate")]
     Closed {
         /// Mean penetration Δ \[m\].
-        approach_m: f64,
+        mean_penetration_m: f64,
     },
     /// Surfaces that stay in contact on unloading.
-    #[error("the surfaces have not separated at the mean penetration {approach_m:e} m, 20 ranges of the heights away")]
+    #[error("the surfaces have not separated at the mean penetration {mean_penetration_m:e} m, 20 ranges of the heights away")]
     Inseparable {
         /// Mean penetration Δ \[m\].
-        approach_m: f64,
+        mean_penetration_m: f64,
     },
     /// The contacts have a larger area than the nominal one, or one of them spans the square.
     #[error(
-        "the contact area {share:.3} A0 leaves no gap at the mean penetration {approach_m:.3e} m: the contacts have grown together, and the asperity \
+        "the contact area {share:.3} A0 leaves no gap at the mean penetration {mean_penetration_m:.3e} m: the contacts have grown together, and the asperity \
          model is invalid"
     )]
     ExcessArea {
         /// Mean penetration Δ \[m\].
-        approach_m: f64,
+        mean_penetration_m: f64,
         /// Contact area Σπa² over A0.
         share: f64,
         /// Load before it \[N\].
@@ -149,14 +149,14 @@ pub enum LoopError {
         work_j: f64,
     },
     /// The maximum load is not reached.
-    #[error("load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration {approach_m:e} m")]
+    #[error("load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration {mean_penetration_m:e} m")]
     LoadNotReached {
         /// The requested load.
         wanted: f64,
         /// The load reached.
         reached: f64,
         /// Mean penetration Δ at the end of the search \[m\].
-        approach_m: f64,
+        mean_penetration_m: f64,
     },
 }
 

@@ -27,13 +27,13 @@ use std::f64::consts::PI;
 pub const HERTZ_EDGE: f64 = 1e-5;
 
 /// Smallest Tabor parameter at which Wu's jump-in distance (Eq 3) holds.
-pub const LEAST_TABOR: f64 = 2.0;
+pub const MIN_TABOR: f64 = 2.0;
 
 /// Constants of one asperity.
 pub(super) const CONSTANTS: &[Constant] = &[
     Constant::new(
         "Tabor parameter of Wu's criterion",
-        &[LEAST_TABOR],
+        &[MIN_TABOR],
         "",
         "With a smaller one a cycle fails, unless `model.allow_low_tabor = true`.",
         "",

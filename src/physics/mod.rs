@@ -69,7 +69,7 @@
 //! let jumps = cycle.events.iter().filter(|event| event.kind == EventKind::JumpIn).count();
 //! assert!(jumps > 0 && checkpoints > 0);
 //! for event in &cycle.events {
-//!     println!("{} at Δ = {:e} m: {:e} J", event.word(), event.approach_m, event.energy_lost_j);
+//!     println!("{} at Δ = {:e} m: {:e} J", event.word(), event.mean_penetration_m, event.energy_lost_j);
 //! }
 //! # Ok::<(), hysteron_physics::PhysicsError>(())
 //! ```

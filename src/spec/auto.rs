@@ -13,7 +13,7 @@ use super::values::Values;
 use super::written::{Written, array};
 use super::{Axis, Spec, SpecErrors, Sweep, Value};
 use crate::model::{AsperityOptions, CaseParams, Choice as _, GeneratedSurface, JumpIn, Method};
-use crate::physics::jkr::{Asperity, LEAST_TABOR};
+use crate::physics::jkr::{Asperity, MIN_TABOR};
 use crate::physics::theory::flattening::flattening;
 use crate::physics::theory::regime::Regime;
 
@@ -99,7 +99,7 @@ fn of_target(params: &CaseParams) -> Method {
     let by_wu = |options: &AsperityOptions| options.jump_in == JumpIn::Wu && !options.allow_low_tabor;
     let needs_range = adhesion > 0.0 && params.asperities().is_some_and(by_wu);
     let sharpest = || Asperity::new(1.0 / (SHARPEST * moments.rms_curvature_1_m()), &params.material);
-    let is_low = |asperity: Asperity| asperity.tabor(params.material.interaction_range_m) < LEAST_TABOR;
+    let is_low = |asperity: Asperity| asperity.tabor(params.material.interaction_range_m) < MIN_TABOR;
     let is_out_of_range = || needs_range && sharpest().is_ok_and(is_low);
     if method == Method::Asperities && is_out_of_range() { Method::BoundaryElements } else { method }
 }

@@ -41,7 +41,7 @@ fn main() -> Result<(), PhysicsError> {
     let cycle = run()?;
     println!("{:<10} {:>7} {:>10} {:>8} {:>8} {:>10}", "branch", "Δ [µm]", "F [mN]", "A [mm²]", "regions", "transforms");
     for step in cycle.steps.iter().step_by(4) {
-        let (penetration_um, load_mn, area_mm2) = (1e6 * step.approach_m, 1e3 * step.load_n, 1e6 * step.area_m2);
+        let (penetration_um, load_mn, area_mm2) = (1e6 * step.mean_penetration_m, 1e3 * step.load_n, 1e6 * step.area_m2);
         let (branch, regions, transforms) = (step.branch.word(), step.counts.contacts, step.numerics.effort.transforms);
         println!("{branch:<10} {penetration_um:>7.3} {load_mn:>10.3} {area_mm2:>8.4} {regions:>8} {transforms:>10}");
     }

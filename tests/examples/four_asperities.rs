@@ -54,7 +54,7 @@ fn main() -> Result<(), PhysicsError> {
         println!(
             "{:<10} {:>8.1} {:>9.3} {:>9.2} {:>9} {:>7} {:>12.3}",
             step.branch.word(),
-            step.approach_m * 1e9,
+            step.mean_penetration_m * 1e9,
             step.load_n * 1e6,
             step.area_m2 * 1e12,
             step.counts.contacts,

@@ -56,8 +56,8 @@ pub fn run() -> Result<Vec<Row>, PhysicsError> {
     let jkr = Asperity::new(RADIUS_M, &MATERIAL)?;
     let (turn, last) = (&cycle.steps[cycle.turning[0].0], &cycle.steps[cycle.steps.len() - 1]);
     let pull_off = cycle.steps.iter().map(|step| step.least_load_n).fold(0.0, f64::min);
-    let jump_off = cycle.events.last().map_or(f64::NAN, |event| event.approach_m);
-    let radius = jkr.radius_at_penetration(turn.approach_m).unwrap_or(f64::NAN);
+    let jump_off = cycle.events.last().map_or(f64::NAN, |event| event.mean_penetration_m);
+    let radius = jkr.radius_at_penetration(turn.mean_penetration_m).unwrap_or(f64::NAN);
     Ok(vec![
         Row { quantity: "load at the reversal F [N]", computed: turn.load_n, exact: jkr.load(radius) },
         Row { quantity: "minimum load, -F_po [N]", computed: pull_off, exact: jkr.pull_off_load() },

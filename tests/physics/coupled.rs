@@ -26,7 +26,7 @@ fn cycle(summits: &[Summit], length: f64, rules: Rules, load: f64) -> Cycle {
 
 /// Spots at the unloading step of the given approach.
 fn at(cycle: &Cycle, approach: f64) -> (usize, Vec<&Contact>) {
-    let found = |s: &Step| s.branch == Branch::Unloading && (s.approach_m - approach).abs() < 1e-6 * GRID;
+    let found = |s: &Step| s.branch == Branch::Unloading && (s.mean_penetration_m - approach).abs() < 1e-6 * GRID;
     let number = cycle.steps.iter().position(found).expect("a step at this approach");
     (number, cycle.contacts.iter().filter(|c| c.step == number).collect())
 }
@@ -119,7 +119,7 @@ fn law_no_event_no_loss() {
         let mut compared = 0;
         let back = unloading(&cycle, 1);
         for up in &cycle.steps[first + 1..second] {
-            let down = back.iter().find(|s| s.approach_m == up.approach_m).expect("one grid for both senses");
+            let down = back.iter().find(|s| s.mean_penetration_m == up.mean_penetration_m).expect("one grid for both senses");
             // Equilibria are met to 1e-17 m; the stiffness is some 100 N/m, the perimeter 1e-4 m, with slopes of 0.2.
             near("load", down.load_n, up.load_n, 1e-13);
             near("area", down.area_m2, up.area_m2, 1e-19);

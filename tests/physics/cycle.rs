@@ -57,7 +57,7 @@ fn law_without_interaction_the_load_is_a_sum() {
     for step in &cycle.steps[..=cycle.turning[0].0] {
         let (mut load, mut area, mut count) = (0.0, 0.0, 0);
         for summit in &summits {
-            let penetration = step.approach_m + summit.height_m - highest;
+            let penetration = step.mean_penetration_m + summit.height_m - highest;
             if penetration >= 0.0 {
                 let jkr = Asperity::new(summit.radius_m(), &PAPER).unwrap();
                 let a = jkr.radius_at_penetration(penetration).unwrap();
@@ -154,7 +154,7 @@ fn law_the_turning_point_is_at_the_load_itself() {
         assert!(cycle.steps.iter().all(|s| s.numerics.residual_m.unwrap() <= 1e-8 * RMS));
         // The loop begins free, before the first jump-in.
         assert_eq!(cycle.steps[0].counts.contacts, 0);
-        assert!(cycle.steps[0].approach_m < 0.0);
+        assert!(cycle.steps[0].mean_penetration_m < 0.0);
     }
 }
 
@@ -175,8 +175,9 @@ fn law_unloading_does_not_depend_on_the_other_turning_points() {
 fn same_whatever_the_step(magnification: u32, max_load: f64, steps: [f64; 2]) {
     let summits = paper_summits(magnification, 0);
     let cycles = steps.map(|step| paper_cycle(&summits, DEFAULT, &[max_load], step));
-    let [coarse, fine] =
-        cycles.each_ref().map(|cycle| cycle.events.iter().map(|e| (e.kind, e.asperity().unwrap(), e.approach_m)).collect::<Vec<_>>());
+    let [coarse, fine] = cycles
+        .each_ref()
+        .map(|cycle| cycle.events.iter().map(|e| (e.kind, e.asperity().unwrap(), e.mean_penetration_m)).collect::<Vec<_>>());
     assert_eq!(coarse, fine);
     let [coarse, fine] = cycles.each_ref().map(|cycle| loop_of(cycle, 0));
     close("area", coarse.area, fine.area, 1e-12);
@@ -232,7 +233,7 @@ fn lim_hardly_any_adhesion_retraces_and_is_hertz() {
         let (top, sums) = (turning(&cycle, 0), loop_of(&cycle, 0));
         let mut compared = 0;
         for down in unloading(&cycle, 0) {
-            if let Some(up) = cycle.steps[..cycle.turning[0].0].iter().find(|up| up.approach_m == down.approach_m) {
+            if let Some(up) = cycle.steps[..cycle.turning[0].0].iter().find(|up| up.mean_penetration_m == down.mean_penetration_m) {
                 // One equilibrium, met twice to 1e-8 of the rms height.
                 near("load", down.load_n, up.load_n, 1e-8 * top.load_n);
                 near("area", down.area_m2, up.area_m2, 1e-8 * top.area_m2);
@@ -248,7 +249,7 @@ fn lim_hardly_any_adhesion_retraces_and_is_hertz() {
             let highest = summits.iter().map(|s| s.height_m).fold(f64::NEG_INFINITY, f64::max);
             let hertz: f64 = summits
                 .iter()
-                .map(|s| (top.approach_m + s.height_m - highest, s.radius_m()))
+                .map(|s| (top.mean_penetration_m + s.height_m - highest, s.radius_m()))
                 .filter(|(d, _)| *d > 0.0)
                 .map(|(d, r)| 4.0 / 3.0 * PAPER.contact_modulus_pa * r.sqrt() * d.powf(1.5))
                 .sum();

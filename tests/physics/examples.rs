@@ -40,7 +40,7 @@ fn law_example_of_four_asperities() {
     let material = four_asperities::MATERIAL;
     let jump_in = Asperity::new(radius, &material).unwrap().wu_jump_in_penetration(material.interaction_range_m);
     // An event is located to 1e-6 of the unit of the approach, 1e-13 m.
-    near("first jump into contact", cycle.events[0].approach_m, jump_in, 1e-13);
+    near("first jump into contact", cycle.events[0].mean_penetration_m, jump_in, 1e-13);
     // The energy of the interaction is exact for point loads; the fields of contact spots differ from these by (a/r)², 0.03 of the interaction.
     let sums = loop_of(&cycle, 0);
     close("energy balance", sums.events, sums.loss, 2e-3);

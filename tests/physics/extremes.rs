@@ -53,7 +53,11 @@ fn lim_without_adhesion() {
             assert_eq!(loop_of(&cycle, k).pull_off, 0.0);
             assert_eq!(back.last().unwrap().counts.contacts, 0);
             for again in back {
-                let there = cycle.steps.iter().find(|step| step.branch == Branch::Loading && step.approach_m == again.approach_m).unwrap();
+                let there = cycle
+                    .steps
+                    .iter()
+                    .find(|step| step.branch == Branch::Loading && step.mean_penetration_m == again.mean_penetration_m)
+                    .unwrap();
                 assert_eq!((there.load_n, there.area_m2, there.counts.contacts), (again.load_n, again.area_m2, again.counts.contacts));
             }
             // Events are undone: those of the unloading give back what those of the loading took, but for the order of the sum.
@@ -72,7 +76,7 @@ fn lim_hertz() {
     let cycle = run(&problem, &[1e-4], 0.05, KeptContacts::None);
     assert!(cycle.steps.len() > 20);
     for step in cycle.steps.iter().filter(|step| step.counts.contacts > 0) {
-        let depth = step.approach_m;
+        let depth = step.mean_penetration_m;
         // A step is in equilibrium to 1e-10 of the rms height, 5e-16 m of depths from 1e-7 m on.
         close("load", step.load_n, 4.0 / 3.0 * 1e6 * radius.sqrt() * depth.powf(1.5), 1e-8);
         close("area", step.area_m2, PI * radius * depth, 1e-8);
@@ -203,7 +207,7 @@ fn reg_weak_adhesion_at_high_load() {
 #[test]
 fn reg_no_equilibrium_has_a_reason_in_words() {
     let sentence = |reason: Reason, residual_m: f64| {
-        LoopError::NoEquilibrium { approach_m: 1e-7, reason, residual_m, asperity: 3, iterations: 100 }.to_string()
+        LoopError::NoEquilibrium { mean_penetration_m: 1e-7, reason, residual_m, asperity: 3, iterations: 100 }.to_string()
     };
     let known = sentence(Reason::Residual, 2e-9);
     assert!(known.contains("the largest residual stays at 2e-9 m (asperity 3)"), "{known}");

@@ -126,8 +126,8 @@ fn law_the_slope_along_a_path_is_a_difference() {
     let direct = DirectSum::new(positions.clone(), LENGTH, &PAPER, Kind::Spots, Boundary::Periodic, Slips::default());
     let fast = FastSum::new(positions, LENGTH, &PAPER, Kind::Spots, Boundary::Periodic, Slips::default(), 1e-9);
     let (mut want, mut want_slopes, mut got, mut slopes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    direct.approach(&spots, &rates, &targets, [&mut want, &mut want_slopes], &mut Tangent::default(), &mut Effort::default());
-    fast.approach(&spots, &rates, &targets, [&mut got, &mut slopes], &mut Tangent::default(), &mut Effort::default());
+    direct.along_path(&spots, &rates, &targets, [&mut want, &mut want_slopes], &mut Tangent::default(), &mut Effort::default());
+    fast.along_path(&spots, &rates, &targets, [&mut got, &mut slopes], &mut Tangent::default(), &mut Effort::default());
     assert_eq!(want, displacements(&direct, &spots, &targets));
     assert!(error(&got, &want) < 1e-9);
     assert!(error(&slopes, &want_slopes) < ROUGH);
@@ -185,8 +185,8 @@ fn law_places_that_are_taken_over_are_as_if_found_anew() {
             // At other places, which change too.
             let targets: Vec<usize> = (0..900).filter(|i| i % 11 != step && !spots.index.contains(i)).collect();
             let (mut want, mut want_slopes, mut got, mut slopes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-            direct.approach(spots, &x, &targets, [&mut want, &mut want_slopes], &mut Tangent::default(), &mut Effort::default());
-            fast.approach(spots, &x, &targets, [&mut got, &mut slopes], &mut kept, &mut Effort::default());
+            direct.along_path(spots, &x, &targets, [&mut want, &mut want_slopes], &mut Tangent::default(), &mut Effort::default());
+            fast.along_path(spots, &x, &targets, [&mut got, &mut slopes], &mut kept, &mut Effort::default());
             let off = [error(&got, &want), error(&slopes, &want_slopes)];
             assert!(off[0] < 1e-9 && off[1] < ROUGH, "{kind:?}, step {step}, other places: {off:?}");
         }

@@ -60,7 +60,7 @@ fn reg_whole_cycles() {
             (found.area / (LENGTH * LENGTH), found.pull_off / load_unit, found.loss / (load_unit * RMS));
         if std::env::var_os("HYSTERON_DIGESTS").is_some() {
             let turning: Vec<_> =
-                cycle.turning.iter().map(|(step, state)| (step, state.approach_m, &state.radius, &state.barred)).collect();
+                cycle.turning.iter().map(|(step, state)| (step, state.mean_penetration_m, &state.radius, &state.barred)).collect();
             // The effort is no result.
             let steps: Vec<_> = cycle
                 .steps

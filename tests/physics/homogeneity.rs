@@ -234,7 +234,7 @@ fn law_a_whole_cycle_scales() {
                 );
                 // Equilibria are met to 1e-10 of the rms height, the turning load to 1e-9 of itself; approaches there follow.
                 let load = base.load_unit_n() * 2e-4;
-                near("approach", s.approach_m, t.approach_m * units.length, 1e-8 * RMS * units.length);
+                near("approach", s.mean_penetration_m, t.mean_penetration_m * units.length, 1e-8 * RMS * units.length);
                 near("load", s.load_n, t.load_n * units.force, 1e-8 * load * units.force);
                 close("area", s.area_m2, t.area_m2 * units.of(2.0, 0.0), 1e-7);
                 close("union", s.area_union_m2, t.area_union_m2 * units.of(2.0, 0.0), 1e-7);

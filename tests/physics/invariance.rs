@@ -42,17 +42,17 @@ fn law_a_way_without_an_event_is_retraced() {
     let settings = Settings { max_loads: Vec::new(), approach_step: 0.01, contacts: KeptContacts::None, rest_every: None };
     let method = Asperities { problem, settings };
     let far = method.run_to(0.3 * RMS).unwrap();
-    let loading: Vec<f64> = far.events.iter().take_while(|e| e.step <= far.turning[0].0).map(|event| event.approach_m).collect();
+    let loading: Vec<f64> = far.events.iter().take_while(|e| e.step <= far.turning[0].0).map(|event| event.mean_penetration_m).collect();
     let gap = loading.windows(2).max_by(|u, v| (u[1] - u[0]).total_cmp(&(v[1] - v[0]))).unwrap();
     // Down from the turning point to a little after the event before it: the loads of both ways at the points of the grid between.
     let turn = 0.25f64.mul_add(gap[0], 0.75 * gap[1]);
     let cycle = method.run_to(turn).unwrap();
     let at = cycle.turning[0].0;
     let quiet = |approach: f64| approach > gap[0] + 1e-3 * RMS && approach < turn;
-    let first = cycle.events.iter().find(|e| e.step > at).map_or(f64::NEG_INFINITY, |event| event.approach_m);
+    let first = cycle.events.iter().find(|e| e.step > at).map_or(f64::NEG_INFINITY, |event| event.mean_penetration_m);
     let mut compared = 0;
-    for back in cycle.steps[at + 1..].iter().filter(|step| quiet(step.approach_m) && step.approach_m > first) {
-        let there = cycle.steps[..at].iter().find(|step| (step.approach_m - back.approach_m).abs() < 1e-9 * RMS).unwrap();
+    for back in cycle.steps[at + 1..].iter().filter(|step| quiet(step.mean_penetration_m) && step.mean_penetration_m > first) {
+        let there = cycle.steps[..at].iter().find(|step| (step.mean_penetration_m - back.mean_penetration_m).abs() < 1e-9 * RMS).unwrap();
         // Equilibria are met to 1e-10 of the rms height, some 1e-9 of a penetration.
         close("load", back.load_n, there.load_n, 1e-8);
         close("area", back.area_m2, there.area_m2, 1e-8);

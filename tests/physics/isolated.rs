@@ -23,7 +23,7 @@ fn cycle(summits: &[Summit], length: f64, rules: Rules, load: f64) -> Cycle {
 
 /// Spots at the unloading step of the given approach.
 fn at(cycle: &Cycle, approach: f64) -> Vec<&Contact> {
-    let found = |s: &Step| s.branch == Branch::Unloading && (s.approach_m - approach).abs() < 1e-6 * GRID;
+    let found = |s: &Step| s.branch == Branch::Unloading && (s.mean_penetration_m - approach).abs() < 1e-6 * GRID;
     let number = cycle.steps.iter().position(found).expect("a step at this approach");
     cycle.contacts.iter().filter(|c| c.step == number).collect()
 }
@@ -153,6 +153,6 @@ fn e2e_the_surface_as_a_patch() {
     // not sink. The rest, a load that is not spread evenly and the shape of the sunken patch, is some tenths of that.
     let load = turning(&patch, 0).load_n;
     let mean = load / (PI * PAPER.contact_modulus_pa * LENGTH) * (4.0 * (1.0 + 2f64.sqrt()).ln() - 4.0 / 3.0 * (2f64.sqrt() - 1.0));
-    let sunk = turning(&patch, 0).approach_m - turning(&square, 0).approach_m;
+    let sunk = turning(&patch, 0).mean_penetration_m - turning(&square, 0).mean_penetration_m;
     near("sinking", sunk, mean, 0.4 * mean);
 }

@@ -222,8 +222,11 @@ mod support {
 
     /// The steps of the unloading from the k-th turning point.
     pub fn unloading(cycle: &Cycle, k: usize) -> Vec<&Step> {
-        let first =
-            cycle.steps.iter().enumerate().filter(|(_, s)| s.branch == Branch::Unloading && s.approach_m == turning(cycle, k).approach_m);
+        let first = cycle
+            .steps
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| s.branch == Branch::Unloading && s.mean_penetration_m == turning(cycle, k).mean_penetration_m);
         let start = first.map(|(i, _)| i).next().unwrap();
         let max_load = cycle.steps[start].max_load;
         cycle.steps[start..].iter().take_while(|s| s.max_load == max_load).collect()

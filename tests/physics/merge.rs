@@ -40,7 +40,7 @@ fn law_two_spots_that_touch_become_one_of_their_area_and_load() {
     let spot = merged.spot;
     // Alone, each is on its own JKR branch, with penetration δ + z; equilibria are met to 5e-16 m of 1e-6 m.
     for (k, sphere) in spheres.iter().enumerate() {
-        let want = sphere.radius_at_penetration(spot.approach_m + pair()[k].height_m).unwrap();
+        let want = sphere.radius_at_penetration(spot.mean_penetration_m + pair()[k].height_m).unwrap();
         close("radius of a part", spot.radii_m[k], want, 1e-8);
     }
     // They merge where they touch, to a thousandth of their distance.
@@ -60,7 +60,7 @@ fn law_two_spots_that_touch_become_one_of_their_area_and_load() {
     close("area", event.after.area_m2, event.before.area_m2, 1e-8);
     // From then on it is one JKR sphere, at the height at which it was in equilibrium.
     let top = turning(&cycle, 0);
-    let a = whole.radius_at_penetration(top.approach_m + spot.height_m).unwrap();
+    let a = whole.radius_at_penetration(top.mean_penetration_m + spot.height_m).unwrap();
     close("area at the turning point", top.area_m2, std::f64::consts::PI * a * a, 1e-8);
     close("load at the turning point", top.load_n, whole.load(a), 1e-8);
     assert_eq!(top.counts.contacts, 1);
@@ -71,7 +71,7 @@ fn law_merging_and_parting_of_a_pair_costs_nothing() {
     let cycle = pair_cycle();
     let [merge, split] = [2, 3].map(|k| cycle.events[k]);
     // It parts at the radius at which it merged, to 1e-4: twice that of the way of 1e-5 m that a²/R has made.
-    near("approach", split.approach_m, merge.approach_m, 2e-9);
+    near("approach", split.mean_penetration_m, merge.mean_penetration_m, 2e-9);
     // The constant of the merged spot takes up the difference of the potentials: neither costs anything, to the rounding of the sums (1e-16 of
     // the energies of its parts).
     let scale: f64 = pair().iter().map(|s| Asperity::new(s.radius_m(), &PAPER).unwrap().loop_loss()).sum();
@@ -169,17 +169,17 @@ fn law_a_reversal_before_any_jump_out_of_contact_retraces() {
     for (summits, rules) in [(pair().to_vec(), MERGE_ALONE), (trio.clone(), MERGE), (trio, MERGE_POINT)] {
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         let cycle = run(&problem, &[1.2e-4], 0.002, KeptContacts::None);
-        let last_in = cycle.events.iter().rfind(|e| e.kind == EventKind::JumpIn).unwrap().approach_m;
-        let merging = cycle.events.iter().find(|e| e.kind == EventKind::Merge).unwrap().approach_m;
-        let loading: Vec<_> = cycle.steps[..cycle.turning[0].0].iter().filter(|s| s.approach_m > last_in).collect();
+        let last_in = cycle.events.iter().rfind(|e| e.kind == EventKind::JumpIn).unwrap().mean_penetration_m;
+        let merging = cycle.events.iter().find(|e| e.kind == EventKind::Merge).unwrap().mean_penetration_m;
+        let loading: Vec<_> = cycle.steps[..cycle.turning[0].0].iter().filter(|s| s.mean_penetration_m > last_in).collect();
         let unloading = unloading(&cycle, 0);
         let mut compared = [0, 0];
         for step in loading {
-            let Some(back) = unloading.iter().find(|s| s.approach_m == step.approach_m) else { continue };
+            let Some(back) = unloading.iter().find(|s| s.mean_penetration_m == step.mean_penetration_m) else { continue };
             // The parts split with the shares of the area that they had at merging, to 1e-4.
             close("load", back.load_n, step.load_n, 1e-6);
             close("area", back.area_m2, step.area_m2, 1e-6);
-            compared[usize::from(step.approach_m > merging)] += 1;
+            compared[usize::from(step.mean_penetration_m > merging)] += 1;
         }
         assert!(compared[0] > 5 && compared[1] > 5, "{:?}: {compared:?}", rules.interaction);
     }
@@ -214,7 +214,8 @@ fn law_a_released_asperity_does_not_merge_with_the_contacts_around_it() {
     for realization in 0..6 {
         let cycle = paper_cycle(&paper_summits(16, realization), MERGE, &[0.0071], 0.01);
         for event in cycle.events.iter().filter(|e| e.kind == EventKind::Uncover) {
-            let merges = |spot: &Merged| spot.parts.contains(&event.asperity().unwrap()) && spot.approach_m == event.approach_m;
+            let merges =
+                |spot: &Merged| spot.parts.contains(&event.asperity().unwrap()) && spot.mean_penetration_m == event.mean_penetration_m;
             released += 1;
             merged += usize::from(cycle.merged.iter().any(|at| merges(&at.spot)));
         }
@@ -232,7 +233,7 @@ fn law_a_turning_point_with_merged_spots_is_enough_to_unload_from() {
     let (cycle, problem) = (method.run().unwrap(), &method.problem);
     for (k, (_, state)) in cycle.turning.iter().enumerate() {
         assert!(state.merged.len() > 10);
-        let again = State::restored(problem, state.approach_m, &state.merged(problem), &state.kept(problem)).unwrap();
+        let again = State::restored(problem, state.mean_penetration_m, &state.merged(problem), &state.kept(problem)).unwrap();
         let other = method.unload_from(k, again).unwrap();
         let (want, max_load) = (unloading(&cycle, k), method.settings.max_loads[k]);
         assert_eq!(other.steps.len(), want.len());
@@ -293,12 +294,13 @@ fn law_spots_that_never_touch_do_not_know_of_it() {
         let problem = Problem::new(&summits, LENGTH, RMS, PAPER, rules).unwrap();
         run(&problem, &[2e-4], 0.02, KeptContacts::None)
     });
-    let list = |cycle: &Cycle| cycle.events.iter().map(|e| (e.kind, e.asperity().unwrap(), e.approach_m.to_bits())).collect::<Vec<_>>();
+    let list =
+        |cycle: &Cycle| cycle.events.iter().map(|e| (e.kind, e.asperity().unwrap(), e.mean_penetration_m.to_bits())).collect::<Vec<_>>();
     assert_eq!(list(&merge).len(), 18);
     // The sums over images are looked up in a table in one and computed in the other: 1e-15 of the approach.
     for (p, q) in merge.events.iter().zip(&cover.events) {
         assert_eq!((p.kind, p.site), (q.kind, q.site));
-        near("approach", p.approach_m, q.approach_m, 1e-14);
+        near("approach", p.mean_penetration_m, q.mean_penetration_m, 1e-14);
     }
     close("loss", loop_of(&merge, 0).loss, loop_of(&cover, 0).loss, 1e-8);
 }

@@ -47,7 +47,7 @@ fn val_the_events_are_those_of_an_independent_solver() {
             for (got, want) in got.iter().zip(&want) {
                 // A jump-in or the end of a branch is met to the tolerance of an equilibrium, 5e-16 m; a fold is passed by 1e-6 of the rms
                 // height, 5e-12 m.
-                near("approach", got.approach_m, want.number("delta"), 6e-12);
+                near("approach", got.mean_penetration_m, want.number("delta"), 6e-12);
                 // Stiffnesses are of some 100 N/m; near a fold, of a thousand.
                 near("load after", got.after.load_n, want.number("load_after"), 5e-9);
                 // Passing a fold by 5e-12 m costs that much times a change of load of 1e-4 N.
@@ -74,7 +74,7 @@ fn val_the_curves_are_those_of_an_independent_solver() {
         for row in curves.rows().filter(|r| r.word("surface") == surface && r.number("delta") != 0.0).skip(1).step_by(4) {
             let delta = row.number("delta");
             let cycle = run(surface, delta.abs());
-            let at = |s: &&Step| s.branch.word() == row.word("branch") && (s.approach_m - delta).abs() < 1e-9 * delta.abs();
+            let at = |s: &&Step| s.branch.word() == row.word("branch") && (s.mean_penetration_m - delta).abs() < 1e-9 * delta.abs();
             let Some(step) = cycle.steps.iter().find(at) else {
                 // The turning approach itself is met from its load.
                 continue;
@@ -101,7 +101,7 @@ fn val_propagated_events_are_those_of_an_independent_solver() {
             let got: Vec<_> = cycle.events.iter().filter(|e| cycle.steps[e.step].branch == branch).collect();
             assert_eq!(got.len(), want.len(), "{surface} {}", branch.word());
             for (got, want) in got.iter().zip(&want) {
-                let off = (got.approach_m - want.number("delta")).abs();
+                let off = (got.mean_penetration_m - want.number("delta")).abs();
                 // The response of the contacts outside a local problem is of first order: a hundredth of a jump-off penetration, 1e-7 m, and five
                 // hundredths for the few events next to a fold. The order within an avalanche may differ.
                 assert!(off < 8e-9, "{surface} {}: off by {off:e}", branch.word());

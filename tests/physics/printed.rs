@@ -102,7 +102,7 @@ fn law_without_interaction_the_loss_is_the_sum_of_the_printed_loops() {
         for event in cycle.events.iter().filter(|e| e.kind == Event::JumpOff) {
             let jkr = Asperity::as_printed(summits[event.asperity().unwrap()].radius_m(), &PAPER, EQ9).unwrap();
             let highest = summits.iter().map(|s| s.height_m).fold(f64::NEG_INFINITY, f64::max);
-            let penetration = event.approach_m + summits[event.asperity().unwrap()].height_m - highest;
+            let penetration = event.mean_penetration_m + summits[event.asperity().unwrap()].height_m - highest;
             near("jump-off", penetration, jkr.jump_off_penetration(), 2.1e-5 * jkr.jump_off_penetration().abs() + 1e-6 * RMS);
         }
     }

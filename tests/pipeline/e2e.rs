@@ -391,7 +391,7 @@ fn unload_from_files(spec: &str) {
             assert_eq!(again.steps.len(), rows.len());
             for (step, &k) in again.steps.iter().zip(&rows) {
                 let [residual_m, least_eigenvalue] = [step.numerics.residual_m, step.numerics.stability].map(Option::unwrap);
-                let got = [step.approach_m, step.load_n, step.area_m2, step.work_j, residual_m, least_eigenvalue];
+                let got = [step.mean_penetration_m, step.load_n, step.area_m2, step.work_j, residual_m, least_eigenvalue];
                 let want = [approach[k], load[k], area[k], work[k], residual[k], stability[k]];
                 assert_eq!(got.map(f64::to_bits), want.map(f64::to_bits), "step {k}");
                 assert_eq!(step.numerics.effort.pairs as i64, effort[k]);

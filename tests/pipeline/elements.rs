@@ -364,7 +364,7 @@ fn e2e_a_state_in_a_file_is_enough_to_unload_by_boundary_elements() {
         let again = stages::unload_again(&campaign, unit, max_load).unwrap();
         assert_eq!(again.steps.len(), rows.len());
         for (step, &k) in again.steps.iter().zip(&rows) {
-            let got = [step.approach_m, step.load_n, step.area_m2, step.work_j];
+            let got = [step.mean_penetration_m, step.load_n, step.area_m2, step.work_j];
             assert_eq!(got.map(f64::to_bits), [approach[k], load[k], area[k], work[k]].map(f64::to_bits), "step {k}");
         }
     }

@@ -101,7 +101,7 @@ impl Asperities {
         let Leg { mut recorder, carried } = Leg::loading(problem, settings);
         travel(problem, carried, Some(turn), &mut |path| {
             recorder.grid_points(settings, path, &mut cycle)?;
-            if path.state().approach_m < turn {
+            if path.state().mean_penetration_m < turn {
                 return Ok(Next::On);
             }
             recorder.turn(settings, path, None, &mut cycle)?;
@@ -143,7 +143,7 @@ impl Leg {
 
     /// Unloading branch from a state at a load reversal, which is sufficient.
     fn unloading(problem: &Problem, settings: &Settings, max_load: Option<f64>, state: State) -> Self {
-        let number = -(state.approach_m / settings.grid(problem)).ceil();
+        let number = -(state.mean_penetration_m / settings.grid(problem)).ceil();
         let recorder = Recorder::new(Branch::Unloading, max_load, number, state.merged.len());
         Self { recorder, carried: PathCheckpoint::begin(problem, state, -1.0) }
     }
@@ -158,7 +158,7 @@ fn load(
     progress: &dyn Fn(LoopPosition),
 ) -> Result<Option<Leg>, PhysicsError> {
     let Leg { mut recorder, carried } = leg;
-    let from = carried.state.approach_m;
+    let from = carried.state.mean_penetration_m;
     let last = settings.max_loads.last().copied().unwrap_or(0.0);
     let left = travel(problem, carried, None, &mut |path| {
         while let Some(max_load) = settings.max_loads.get(cycle.turning.len()) {
@@ -167,9 +167,9 @@ fn load(
         }
         let Some(max_load) = settings.max_loads.get(cycle.turning.len()) else { return Ok(Next::End) };
         recorder.grid_points(settings, path, cycle)?;
-        let (reached, approach_m) = (path.totals().load_n / problem.load_unit_n(), path.state().approach_m);
-        if approach_m > 100.0 * problem.rms_height_m {
-            return Err(LoopError::LoadNotReached { wanted: *max_load, reached, approach_m }.into());
+        let (reached, mean_penetration_m) = (path.totals().load_n / problem.load_unit_n(), path.state().mean_penetration_m);
+        if mean_penetration_m > 100.0 * problem.rms_height_m {
+            return Err(LoopError::LoadNotReached { wanted: *max_load, reached, mean_penetration_m }.into());
         }
         progress(LoopPosition { done: (reached / last).clamp(0.0, 1.0), steps: cycle.steps.len(), unloading: false, load: reached });
         Ok(if settings.rests(path, from) { Next::Rest } else { Next::On })
@@ -186,7 +186,7 @@ fn unload(
     progress: &dyn Fn(LoopPosition),
 ) -> Result<Option<Leg>, PhysicsError> {
     let Leg { mut recorder, carried } = leg;
-    let from = carried.state.approach_m;
+    let from = carried.state.mean_penetration_m;
     let mut full = None;
     let left = travel(problem, carried, None, &mut |path| {
         let full = *full.get_or_insert(path.totals().area_m2);
@@ -258,5 +258,5 @@ fn check_area(path: &EquilibriumPath, load_before_n: f64) -> Result<(), LoopErro
         return Ok(());
     }
     // Not −0.
-    Err(LoopError::ExcessArea { approach_m: path.state().approach_m + 0.0, share, load_before_n })
+    Err(LoopError::ExcessArea { mean_penetration_m: path.state().mean_penetration_m + 0.0, share, load_before_n })
 }

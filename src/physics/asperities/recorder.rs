@@ -63,7 +63,7 @@ impl Recorder {
 
     /// Records the beginning, and the grid points passed in the last increment.
     pub(crate) fn grid_points(&mut self, settings: &Settings, path: &mut EquilibriumPath, cycle: &mut Cycle) -> Result<(), PhysicsError> {
-        let end = path.state().approach_m;
+        let end = path.state().mean_penetration_m;
         self.grid_points_until(end, settings, path, cycle)
     }
 
@@ -84,11 +84,10 @@ impl Recorder {
                 return Ok(());
             }
             self.number += 1.0;
-            if path.is_exact() && (next - path.state().approach_m).abs() <= 1e-9 * spacing {
+            if path.is_exact() && (next - path.state().mean_penetration_m).abs() <= 1e-9 * spacing {
                 self.record(settings, path, None, cycle, StepReason::GridPoint);
             } else {
                 let excursion = path.excursion(next)?;
-                path.add_effort(excursion.effort());
                 self.record(settings, path, Some(&excursion), cycle, StepReason::GridPoint);
             }
         }
@@ -117,7 +116,7 @@ impl Recorder {
         cycle: &mut Cycle,
     ) -> Result<(), PhysicsError> {
         let state = excursion.map_or_else(|| path.state().clone(), |at| at.state().clone());
-        self.grid_points_until(state.approach_m, settings, path, cycle)?;
+        self.grid_points_until(state.mean_penetration_m, settings, path, cycle)?;
         self.record(settings, path, excursion, cycle, StepReason::Reversal);
         cycle.turning.push((cycle.steps.len() - 1, state));
         Ok(())
@@ -136,16 +135,16 @@ impl Recorder {
         let at = excursion.unwrap_or(path);
         let problem = &*at.problem();
         let state = at.state();
-        let passed = |approach: f64| excursion.is_none() || (approach - state.approach_m) * path.sense() <= 0.0;
+        let passed = |mean_penetration: f64| excursion.is_none() || (mean_penetration - state.mean_penetration_m) * path.sense() <= 0.0;
         let recent: Vec<PathEvent> =
-            path.log().events[self.events_before..].iter().take_while(|event| passed(event.approach_m)).copied().collect();
+            path.log().events[self.events_before..].iter().take_while(|event| passed(event.mean_penetration_m)).copied().collect();
         let ways: Vec<f64> =
-            path.log().segments[self.ways_before..].iter().take_while(|way| passed(way.approach)).map(|way| way.least).collect();
+            path.log().segments[self.ways_before..].iter().take_while(|way| passed(way.mean_penetration)).map(|way| way.least).collect();
         let effort = path.effort();
         cycle.steps.push(Step {
             branch: self.branch,
             max_load: self.max_load,
-            approach_m: state.approach_m,
+            mean_penetration_m: state.mean_penetration_m,
             load_n: at.totals().load_n,
             least_load_n: ways.iter().copied().fold(at.totals().load_n, f64::min),
             area_m2: at.totals().area_m2,
@@ -166,9 +165,9 @@ impl Recorder {
         self.ways_before += ways.len();
         self.effort_before = effort;
         cycle.events.extend(recent.into_iter().map(|event| {
-            let PathEvent { kind, asperity, status, cause, approach_m, avalanche, before, after, energy_lost_j } = event;
+            let PathEvent { kind, asperity, status, cause, mean_penetration_m, avalanche, before, after, energy_lost_j } = event;
             let site = Site::Asperity(problem.number(asperity));
-            Event { step: number, kind, site, status: Some(status), cause, approach_m, avalanche, before, after, energy_lost_j }
+            Event { step: number, kind, site, status: Some(status), cause, mean_penetration_m, avalanche, before, after, energy_lost_j }
         }));
         let keep = match settings.contacts {
             KeptContacts::All => true,

@@ -18,8 +18,8 @@ pub struct Settings {
     pub contacts: KeptContacts,
     /// Interval of mean penetration, in rms heights, between checkpoints.
     ///
-    /// `None` for a run without checkpoints.
-    /// At a checkpoint the path restarts from the stored state, so that another process can continue it.
+    /// `None` for a run without checkpoints. At a checkpoint the path restarts from the stored state, so that
+    /// another process can continue it.
     pub rest_every: Option<f64>,
 }
 
@@ -31,7 +31,7 @@ impl Settings {
 
     /// True if the path has reached a checkpoint position other than `from` \[m\].
     pub(super) fn rests(&self, path: &EquilibriumPath, from: f64) -> bool {
-        let at = path.state().approach_m;
+        let at = path.state().mean_penetration_m;
         self.rest_every.is_some_and(|every| path.is_exact() && at != from && is_multiple(at, every * path.problem().rms_height_m))
     }
 }

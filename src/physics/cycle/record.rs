@@ -78,7 +78,7 @@ pub struct Step {
     /// `None` while loading.
     pub max_load: Option<f64>,
     /// Mean penetration Δ \[m\], 0 at the highest summit.
-    pub approach_m: f64,
+    pub mean_penetration_m: f64,
     /// Load F \[N\], positive in compression.
     pub load_n: f64,
     /// Smallest load since the step before, events included \[N\].
@@ -145,7 +145,7 @@ pub struct Event {
     /// Kind of the event that causes the relaxation in which it happens. For a region the kind itself.
     pub cause: EventKind,
     /// Mean penetration Δ \[m\].
-    pub approach_m: f64,
+    pub mean_penetration_m: f64,
     /// Number of its avalanche, counted along the branch.
     pub avalanche: u64,
     /// Load and area before.
@@ -215,7 +215,7 @@ pub struct Merged {
     /// Contact radius at which the spot splits \[m\].
     pub release_m: f64,
     /// Mean penetration at merging \[m\].
-    pub approach_m: f64,
+    pub mean_penetration_m: f64,
 }
 
 impl Merged {

@@ -10,7 +10,7 @@ use crate::theory::approximate_jkr::{CurvePoint, adhesive_curve};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeStep {
     /// Mean penetration Δ \[m\].
-    pub approach_m: f64,
+    pub mean_penetration_m: f64,
     /// Load \[N\].
     pub load_n: f64,
     /// Contact area \[m²\].
@@ -32,16 +32,16 @@ impl Elements {
         let work_length = problem.law.work();
         let wanted = settings.max_loads.iter().copied().fold(0.0, f64::max);
         let range = -problem.heights.iter().copied().fold(0.0, f64::min);
-        let deepest_m = cycle.steps.iter().map(|step| step.approach_m).fold(0.0, f64::max);
+        let deepest_m = cycle.steps.iter().map(|step| step.mean_penetration_m).fold(0.0, f64::max);
         let farthest = range + deepest_m / units.spacing_m();
         let mut is_enough = |steps: &[GridStep]| {
             let is_reached = || adhesive_curve(&curve(steps), work_length).last().is_some_and(|point| point.load_m2 > wanted);
-            steps.last().is_some_and(|step| step.approach > farthest) || is_reached()
+            steps.last().is_some_and(|step| step.mean_penetration > farthest) || is_reached()
         };
         let free = problem.without_adhesion();
         let steps = load_freely(&free, free.numerics.steps.free_step * settings.step, settings.accuracy, &mut is_enough)?;
         let in_si = |step: &GridStep| FreeStep {
-            approach_m: step.approach * units.spacing_m(),
+            mean_penetration_m: step.mean_penetration * units.spacing_m(),
             load_n: step.totals.load * units.load_n(),
             area_m2: step.totals.contact as f64 * units.area_m2(),
             is_converged: step.converged,
@@ -53,7 +53,10 @@ impl Elements {
 
 /// Steps without adhesion in grid units.
 fn curve(steps: &[GridStep]) -> Vec<CurvePoint> {
-    let point =
-        |step: &GridStep| CurvePoint { penetration_m: step.approach, load_m2: step.totals.load, area_m2: step.totals.contact as f64 };
+    let point = |step: &GridStep| CurvePoint {
+        penetration_m: step.mean_penetration,
+        load_m2: step.totals.load,
+        area_m2: step.totals.contact as f64,
+    };
     steps.iter().map(point).collect()
 }

@@ -1,7 +1,7 @@
 //! A rough rigid surface against an elastic half-space, its states and their energy.
 //!
 //! With the displacement `u` (zero mean), the mean gap `D` and the heights `z`, the gap is `g = D + u − z` and the energy
-//! `Π(u; D) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ V'(g)` at the approach `Δ = max z − D`.
+//! `Π(u; D) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ V'(g)` at the mean penetration `Δ = max z − D`.
 
 use super::grid::half_space::remove_mean;
 use super::grid::half_space::{HalfSpace, Operator, Waves};
@@ -60,8 +60,8 @@ pub enum Nucleation {
 /// A state of the contact. Fields have one value per point, row by row.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// Approach Δ, 0 where the undeformed surfaces touch \[dx\].
-    pub approach: f64,
+    /// Mean penetration Δ, 0 where the undeformed surfaces touch \[dx\].
+    pub mean_penetration: f64,
     /// Displacement u, with zero mean \[dx\].
     pub displacement: Vec<f64>,
     /// Elastic pressure `K u`, with zero mean \[E*\]; empty in a state that is kept, since it follows from the displacement.
@@ -107,14 +107,14 @@ impl Problem {
         Self { attraction: Attraction::None, law: Law::crack(self.law.work()), ..self }
     }
 
-    /// Undeformed and out of contact at an approach.
+    /// Undeformed and out of contact at a mean penetration.
     ///
     /// # Errors
     /// Not enough memory.
-    pub fn apart(&self, approach: f64) -> Result<State, PhysicsError> {
+    pub fn apart(&self, mean_penetration: f64) -> Result<State, PhysicsError> {
         let points = self.half_space.points();
         Ok(State {
-            approach,
+            mean_penetration,
             displacement: filled(points, 0.0)?,
             pressure: filled(points, 0.0)?,
             bonds: filled(points, if self.attraction == Attraction::Range { Bonding::Bonded } else { Bonding::Free })?,
@@ -145,7 +145,7 @@ impl Problem {
     /// Gap at a point.
     #[inline(always)]
     pub(super) fn gap(&self, state: &State, point: usize) -> f64 {
-        state.displacement[point] - state.approach - self.heights[point]
+        state.displacement[point] - state.mean_penetration - self.heights[point]
     }
 
     /// Load, energy and area of a state.
@@ -243,12 +243,12 @@ impl Problem {
         let (end, spring) = (self.law.end_gap(), self.law.spring_gap());
         let nucleus = if strength.is_finite() && !touching.contains(&0) { self.widest_gap(state) } else { None };
         let columns = self.half_space.columns();
-        let approach = state.approach;
+        let mean_penetration = state.mean_penetration;
         let rows = (state.bonds.par_chunks_mut(columns), state.displacement.par_chunks(columns), self.heights.par_chunks(columns));
         rows.into_par_iter().enumerate().with_min_len(grain(columns)).for_each(|(row, (bonds, displacement, heights))| {
             let (near, edge) = self.surroundings_in(row, &touching, margin);
             for (k, bonding) in bonds.iter_mut().enumerate() {
-                let gap = displacement[k] - approach - heights[k];
+                let gap = displacement[k] - mean_penetration - heights[k];
                 match *bonding {
                     Bonding::Bonded if near[k] == 0 && gap >= end => *bonding = Bonding::Free,
                     Bonding::Bonded if strength > 0.0 && edge[k] == 0 && gap <= spring => *bonding = Bonding::Sealed,

@@ -39,7 +39,7 @@ fn step(cycle: &records::Cycle, at: usize, events: EventCounts, max_loads: &[f64
         branch: if of.reversal.is_some() { Branch::Unloading } else { Branch::Loading },
         max_load: of.reversal.and_then(|reversal| max_loads.get(reversal)).copied(),
         // Not −0.
-        approach_m: (of.approach + 0.0) * units.spacing_m(),
+        mean_penetration_m: (of.mean_penetration + 0.0) * units.spacing_m(),
         load_n,
         least_load_n: cycle.least_load(at) * units.load_n(),
         area_m2,
@@ -64,7 +64,7 @@ fn event(cycle: &records::Cycle, number: usize, of: &records::Event, units: &Uni
         site: Site::Region(of.kind),
         status: None,
         cause: of.kind.kind(),
-        approach_m: cycle.steps[of.step].approach * units.spacing_m(),
+        mean_penetration_m: cycle.steps[of.step].mean_penetration * units.spacing_m(),
         avalanche: number as u64,
         before: totals(of.before, units),
         after: totals(of.after, units),

@@ -78,11 +78,13 @@ impl Units {
     pub(super) fn error(&self, error: LoopError) -> LoopError {
         let spacing = self.spacing_m();
         match error {
-            LoopError::LoadNotReached { wanted, reached, approach_m } => {
-                LoopError::LoadNotReached { wanted: wanted / self.all(), reached: reached / self.all(), approach_m: approach_m * spacing }
-            }
-            LoopError::Closed { approach_m } => LoopError::Closed { approach_m: approach_m * spacing },
-            LoopError::Inseparable { approach_m } => LoopError::Inseparable { approach_m: approach_m * spacing },
+            LoopError::LoadNotReached { wanted, reached, mean_penetration_m } => LoopError::LoadNotReached {
+                wanted: wanted / self.all(),
+                reached: reached / self.all(),
+                mean_penetration_m: mean_penetration_m * spacing,
+            },
+            LoopError::Closed { mean_penetration_m } => LoopError::Closed { mean_penetration_m: mean_penetration_m * spacing },
+            LoopError::Inseparable { mean_penetration_m } => LoopError::Inseparable { mean_penetration_m: mean_penetration_m * spacing },
             LoopError::UnresolvedLoop { max_load, loss_j, events_j, work_j } => {
                 let [loss_j, events_j, work_j] = [loss_j, events_j, work_j].map(|energy| energy * self.energy_j());
                 LoopError::UnresolvedLoop { max_load: max_load / self.all(), loss_j, events_j, work_j }

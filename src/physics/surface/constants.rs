@@ -1,22 +1,16 @@
 //! Limits of measured surfaces.
 
-use super::continuation::LEAST_MARGIN;
-use super::measured::{FEWEST_POINTS, LEAST_CURVATURE_SHARE, MAX_MISSING_FRACTION, MAX_SPACING_RATIO, MOST_POINTS, SPACING_TOLERANCE};
+use super::continuation::MIN_MARGIN;
+use super::measured::{MAX_MISSING_FRACTION, MAX_POINTS, MAX_SPACING_RATIO, MIN_CURVATURE_SHARE, MIN_POINTS, SPACING_TOLERANCE};
 use super::measured_summits::{RIDGE, ROUNDING_OF_RIPPLES};
 use super::outliers::{CONTRAST, LARGEST_GROUP, OUTLIER_LIMIT};
 use super::rows::{COMMON, PERIODIC};
-use super::self_affine::{FEWEST, FEWEST_BEYOND, MOST_SCATTER, SHARE};
+use super::self_affine::{MAX_SCATTER, MIN_RINGS, MIN_RINGS_BEYOND, SHARE};
 use crate::constants::Constant;
 
 /// Limits of a measured surface.
 pub(crate) const CONSTANTS: &[Constant] = &[
-    Constant::new(
-        "points along a side",
-        &[FEWEST_POINTS as f64, MOST_POINTS as f64],
-        "",
-        "Minimum and maximum, after the crop.",
-        "measured",
-    ),
+    Constant::new("points along a side", &[MIN_POINTS as f64, MAX_POINTS as f64], "", "Minimum and maximum, after the crop.", "measured"),
     Constant::new("missing points", &[MAX_MISSING_FRACTION], "of all points", "Maximum that `--fill` interpolates.", "measured"),
     Constant::new(
         "difference of the pixel sizes",
@@ -51,14 +45,14 @@ pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new("correlation of line offsets", &[PERIODIC], "", "A larger one is that of a periodic surface.", "rows"),
     Constant::new(
         "rings of a spectrum fit",
-        &[FEWEST as f64, FEWEST_BEYOND as f64],
+        &[MIN_RINGS as f64, MIN_RINGS_BEYOND as f64],
         "",
         "Minimum, and minimum beyond a roll-off.",
         "self_affine",
     ),
     Constant::new(
         "deviation from a spectrum fit",
-        &[MOST_SCATTER],
+        &[MAX_SCATTER],
         "decades",
         "With a larger rms deviation there is no fit.",
         "self_affine",
@@ -72,7 +66,7 @@ pub(crate) const CONSTANTS: &[Constant] = &[
     ),
     Constant::new(
         "margin of a non-periodic scan",
-        &[LEAST_MARGIN as f64],
+        &[MIN_MARGIN as f64],
         "points",
         "Minimum, else half a cut-off wavelength; asperities closer to an edge are left out.",
         "continuation",
@@ -93,7 +87,7 @@ pub(crate) const CONSTANTS: &[Constant] = &[
     ),
     Constant::new(
         "share of the shortest octave",
-        &[LEAST_CURVATURE_SHARE],
+        &[MIN_CURVATURE_SHARE],
         "of the mean square Laplacian",
         "Wavelengths that hold less do not count as shortest wavelengths.",
         "measured",

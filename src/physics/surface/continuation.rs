@@ -11,13 +11,13 @@ use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
 
 /// Minimum distance from the edges, in points, where derivatives and asperities are taken.
-pub(super) const LEAST_MARGIN: usize = 4;
+pub(super) const MIN_MARGIN: usize = 4;
 
 /// Points along each edge whose derivatives and asperities are excluded: half a cut-off wavelength, at least four points.
 ///
 /// The heights there depend on the rule for the edges.
 pub(super) fn margin(points_per_shortest_wavelength: f64) -> usize {
-    ((0.5 * points_per_shortest_wavelength).ceil() as usize).max(LEAST_MARGIN)
+    ((0.5 * points_per_shortest_wavelength).ceil() as usize).max(MIN_MARGIN)
 }
 
 /// A square field with `width` further points on each side.

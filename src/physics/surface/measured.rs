@@ -26,11 +26,11 @@ use crate::model::{Detrend, Filter, Missing};
 use ndarray::{Array2, ArrayView2, s};
 
 /// Minimum and maximum number of points along a side.
-pub const FEWEST_POINTS: usize = 16;
+pub const MIN_POINTS: usize = 16;
 /// 1 GiB of heights.
 ///
 /// The mirror extension needs four times as much during filtering.
-pub const MOST_POINTS: usize = 8192;
+pub const MAX_POINTS: usize = 8192;
 
 /// Maximum fraction of missing points.
 pub(super) const MAX_MISSING_FRACTION: f64 = 0.5;
@@ -42,7 +42,7 @@ pub(super) const MAX_SPACING_RATIO: f64 = 16.0;
 /// Share of the mean square Laplacian that an octave of wavelengths must hold to affect the asperities.
 ///
 /// Without an octave that holds less, the rms curvature is lower by up to 5 %.
-pub const LEAST_CURVATURE_SHARE: f64 = 0.1;
+pub const MIN_CURVATURE_SHARE: f64 = 0.1;
 
 /// Preprocessing of a measured surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -232,10 +232,10 @@ fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], edges: Edges) -> Result<S
     };
     let (rows, columns) = heights_m.dim();
     let side = rows.min(columns);
-    if side < FEWEST_POINTS {
+    if side < MIN_POINTS {
         return Err(domain("the number of points along its shorter side", side as f64, "16 or more"));
     }
-    if side > MOST_POINTS {
+    if side > MAX_POINTS {
         return Err(domain(
             "the number of points along its shorter side",
             side as f64,

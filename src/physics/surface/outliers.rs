@@ -21,7 +21,7 @@ pub(super) const CONTRAST: f64 = 3.0;
 /// Points of a square of 5 x 5 without its centre.
 const NEIGHBOURS: usize = 24;
 /// Minimum number of neighbours that are not missing.
-const FEWEST_NEIGHBOURS: usize = 5;
+const MIN_NEIGHBOURS: usize = 5;
 /// Maximum number of points from which the standard deviation is taken.
 const SAMPLE: usize = 1 << 20;
 /// Sweeps of the in-fill, enough for groups of [`LARGEST_GROUP`] points to rounding.
@@ -109,7 +109,7 @@ impl Scan<'_> {
                 }
             }
         }
-        (count >= FEWEST_NEIGHBOURS).then(|| median(&mut known[..count]))
+        (count >= MIN_NEIGHBOURS).then(|| median(&mut known[..count]))
     }
 
     /// Robust standard deviation of the points from the median of their neighbours; at least the smallest step between two adjacent heights, so that

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Parts of a line whose offsets are compared.
 const PARTS: usize = 8;
 /// Fewest points of a line, and fewest lines, in which offsets are looked for.
-const FEWEST: usize = 16;
+const MIN_LINES: usize = 16;
 /// Standard deviations beyond which an offset is clipped, so that a few steps of the surface do not count.
 const CLIP: f64 = 4.0 * 1.4826;
 /// Minimum part of the variance of the differences that all parts of a line have in common.
@@ -90,7 +90,7 @@ fn difference(from: ArrayView1<'_, f64>, to: ArrayView1<'_, f64>) -> Option<f64>
 #[must_use]
 pub fn line_jump(heights: ArrayView2<'_, f64>) -> f64 {
     let (rows, columns) = heights.dim();
-    if rows < FEWEST || columns < FEWEST {
+    if rows < MIN_LINES || columns < MIN_LINES {
         return 0.0;
     }
     let part = |part: usize| part * columns / PARTS..(part + 1) * columns / PARTS;
@@ -127,7 +127,7 @@ fn independent_offset(steps: &[Option<[f64; PARTS]>]) -> f64 {
     // The fourth difference of the offsets over 6, and the second one over 2.
     let fourth = combined(steps, [1.0, -3.0, 3.0, -1.0].map(|weight| weight / 6.0));
     let second = combined(steps, [0.5, -0.5]);
-    if fourth.len() < FEWEST / 2 {
+    if fourth.len() < MIN_LINES / 2 {
         return 0.0;
     }
     let [(common, all), (smoother, _)] = [&fourth, &second].map(|list| variances(list));
@@ -173,7 +173,7 @@ fn displaced_offset(steps: &[Option<[f64; PARTS]>], rows: usize) -> f64 {
     let middle = |bend: &Option<[f64; PARTS]>| bend.as_ref().map(|parts| median(&mut parts.clone()));
     let medians: Vec<Option<f64>> = bends.iter().map(middle).collect();
     let mut sizes: Vec<f64> = medians.iter().flatten().map(|bend| bend.abs()).collect();
-    if sizes.len() < FEWEST / 2 {
+    if sizes.len() < MIN_LINES / 2 {
         return 0.0;
     }
     let limit = DISPLACED * median(&mut sizes);

@@ -37,9 +37,9 @@ pub struct SelfAffine {
 /// Decrease of the cost that a roll-off, and that damping, must yield; an L-filter, which resembles a roll-off, must yield more.
 const OF_SHAPE: f64 = 8.0;
 /// Fewest rings of a fit.
-pub(super) const FEWEST: usize = 5;
+pub(super) const MIN_RINGS: usize = 5;
 /// Fewest rings of the power law beyond a roll-off.
-pub(super) const FEWEST_BEYOND: usize = 4;
+pub(super) const MIN_RINGS_BEYOND: usize = 4;
 /// Minimum fraction of the mean square height of all rings that the band holds: leakage and rounding hold
 /// less.
 pub(super) const SHARE: f64 = 0.1;
@@ -54,7 +54,7 @@ const END: f64 = 0.1;
 /// Hurst exponents of a self-affine surface, with a margin for the error of the fit.
 const HURST: RangeInclusive<f64> = -0.05..=1.1;
 /// Largest rms deviation from a fit \[decades\].
-pub(super) const MOST_SCATTER: f64 = 0.5;
+pub(super) const MAX_SCATTER: f64 = 0.5;
 /// Exponents of a spectrum that is fitted at all, from a density that grows with q to that of a smooth form.
 const ANY: RangeInclusive<f64> = -1.5..=3.0;
 /// Cost beyond that of any power law at which a self-affine spectrum is given up: four rings that it leaves out.
@@ -77,7 +77,7 @@ pub fn fit_self_affine(rings: &[Ring], length_m: f64, estimate: Estimate) -> Opt
         found = Found::of(rings, &sampling, noise_m4, Some(&found.line)).unwrap_or(found);
     }
     let Found { points, line, noise_m4, .. } = found;
-    if line.scatter > MOST_SCATTER * LN_10 {
+    if line.scatter > MAX_SCATTER * LN_10 {
         return None;
     }
     let band = Band { points: &points, line: &line, noise_m4, length_m };
@@ -151,7 +151,7 @@ impl Search<'_> {
             for shape in [Shape::Sharp, Shape::Smooth, Shape::Filtered] {
                 let sums = Sums::of(self.data, shape, point.x);
                 for first in 0..at {
-                    for end in (first + FEWEST).max(at + 1 + FEWEST_BEYOND)..=self.data.len() {
+                    for end in (first + MIN_RINGS).max(at + 1 + MIN_RINGS_BEYOND)..=self.data.len() {
                         self.compare(&sums, [first, end], ranges, &mut found);
                     }
                 }
@@ -165,7 +165,7 @@ impl Search<'_> {
         let Some(point) = self.data.first() else { return };
         let sums = Sums::of(self.data, Shape::Straight, point.x);
         for first in 0..self.data.len() {
-            for end in first + FEWEST..=self.data.len() {
+            for end in first + MIN_RINGS..=self.data.len() {
                 self.compare(&sums, [first, end], ranges, found);
             }
         }
@@ -217,7 +217,7 @@ impl Search<'_> {
         let is_empty = |at: Option<usize>| at.and_then(|at| self.data.get(at)).is_some_and(|point| point.is_empty(&line));
         let from = first + usize::from(is_empty(first.checked_sub(1)));
         let to = end - usize::from(line.damping == 0.0 && is_empty(Some(end)));
-        if to < from + FEWEST || line.shape.rolls_off() && self.data[from].x >= line.corner {
+        if to < from + MIN_RINGS || line.shape.rolls_off() && self.data[from].x >= line.corner {
             return line;
         }
         let corner = if line.shape == Shape::Straight { self.data[from].x } else { line.corner };
@@ -242,5 +242,5 @@ fn is_damped(line: &Line, inside: &[Point], next: Option<&Point>) -> bool {
     let damping = |point: &Point| line.damping * (2.0 * point.x).exp();
     let small = inside.iter().filter(|point| point.x >= line.corner && damping(point) < SMALL_DAMPING);
     let continues = next.is_none_or(|point| point.y - line.at(point.x) > END.ln());
-    small.count() >= FEWEST_BEYOND && continues && inside.last().is_some_and(|point| DAMPING.contains(&damping(point)))
+    small.count() >= MIN_RINGS_BEYOND && continues && inside.last().is_some_and(|point| DAMPING.contains(&damping(point)))
 }

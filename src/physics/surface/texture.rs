@@ -29,7 +29,7 @@ const DIRECTIONS: usize = 180;
 /// Distance between the points on a ray of the autocorrelation, in points.
 const STEP: f64 = 0.5;
 /// Maximum number of points along a side of the autocorrelation; of larger fields blocks are averaged.
-const MOST_POINTS: usize = 2048;
+const MAX_POINTS: usize = 2048;
 /// Sides over decay lengths from which Str is determined: fewer are too small a sample, and Str of an isotropic surface is below ½ by chance.
 const DECAY_LENGTHS: f64 = 20.0;
 /// Minimum mean square slope along an axis, relative to the other: rounding.
@@ -87,9 +87,9 @@ fn slopes(heights_m: ArrayView2<'_, f64>, edges: Edges) -> (f64, f64) {
     (if mean > 0.0 { ratio } else { 1.0 }, ridges.rem_euclid(PI))
 }
 
-/// Means of square blocks, so that at most [`MOST_POINTS`] points remain along a side.
+/// Means of square blocks, so that at most [`MAX_POINTS`] points remain along a side.
 fn averaged(heights_m: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError> {
-    let block = heights_m.nrows().div_ceil(MOST_POINTS);
+    let block = heights_m.nrows().div_ceil(MAX_POINTS);
     let side = heights_m.nrows() / block;
     let mut coarse = zeros((side, side))?;
     for (means, lines) in coarse.rows_mut().into_iter().zip(heights_m.exact_chunks((block, heights_m.ncols()))) {

@@ -34,7 +34,7 @@ use super::{
     sticky_line,
 };
 use crate::PhysicsError;
-use crate::jkr::{Asperity, LEAST_TABOR};
+use crate::jkr::{Asperity, MIN_TABOR};
 use crate::model::{Material, Slips};
 use crate::surface::SquareMap;
 use crate::surface::spectrum::{Moments, Spectrum};
@@ -169,7 +169,7 @@ pub struct Tabor {
     pub max: f64,
     /// Mean.
     pub mean: f64,
-    /// Fraction of the asperities below [`LEAST_TABOR`].
+    /// Fraction of the asperities below [`MIN_TABOR`].
     pub low_share: f64,
 }
 
@@ -178,7 +178,7 @@ impl Tabor {
     fn of(asperities: &[Asperity], range_m: f64) -> Option<Self> {
         let mut tabor: Vec<f64> = asperities.iter().map(|asperity| asperity.tabor(range_m)).collect();
         tabor.sort_by(f64::total_cmp);
-        let low = tabor.iter().filter(|number| **number < LEAST_TABOR).count();
+        let low = tabor.iter().filter(|number| **number < MIN_TABOR).count();
         let count = tabor.len() as f64;
         Some(Self {
             min: *tabor.first()?,

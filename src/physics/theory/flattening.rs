@@ -6,7 +6,7 @@ use crate::PhysicsError;
 use crate::surface::SquareMap;
 use crate::surface::continuation::laplacian;
 use crate::surface::edges::Edges;
-use crate::surface::measured::LEAST_CURVATURE_SHARE;
+use crate::surface::measured::MIN_CURVATURE_SHARE;
 use crate::surface::modes::Field;
 use crate::surface::periodogram::windowed;
 use crate::surface::spectrum::Spectrum;
@@ -128,7 +128,7 @@ pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus
 
 /// Shortest wavelength of heights on a square after a low-pass filter with a cut-off \[m\].
 ///
-/// It is the cut-off if the octave above it, with everything below, holds [`LEAST_CURVATURE_SHARE`] of the mean square Laplacian.
+/// It is the cut-off if the octave above it, with everything below, holds [`MIN_CURVATURE_SHARE`] of the mean square Laplacian.
 /// A field without such short waves has one that is longer by a power of two.
 /// For a field that is not periodic the spectrum is that of the Laplacian under a Hann window.
 ///
@@ -141,7 +141,7 @@ pub fn shortest_wavelength(map: SquareMap<'_>, cut_off_m: f64) -> Result<f64, Ph
     }
     let n = heights_m.nrows() as f64;
     // Under the window the leakage of long wavelengths is not multiplied by q⁴.
-    let points = (cut_off_m * n / length_m).max(FEWEST_POINTS);
+    let points = (cut_off_m * n / length_m).max(MIN_POINTS);
     let (field, exponent) = match edges {
         Edges::Periodic => (Field::of(heights_m, length_m, Edges::Periodic)?, 4),
         Edges::Open => (Field::of(windowed(laplacian(heights_m, points)?.view())?.view(), length_m, Edges::Periodic)?, 0),
@@ -150,7 +150,7 @@ pub fn shortest_wavelength(map: SquareMap<'_>, cut_off_m: f64) -> Result<f64, Ph
     while 2.0 * shortest < length_m {
         let edge = TAU / shortest;
         let [octave, whole] = field.weighted(|q| [if 2.0 * q >= edge { q.powi(exponent) } else { 0.0 }, q.powi(exponent)]);
-        if octave >= LEAST_CURVATURE_SHARE * whole {
+        if octave >= MIN_CURVATURE_SHARE * whole {
             break;
         }
         shortest *= 2.0;
@@ -159,7 +159,7 @@ pub fn shortest_wavelength(map: SquareMap<'_>, cut_off_m: f64) -> Result<f64, Ph
 }
 
 /// Points per cut-off wavelength for which derivatives are defined.
-const FEWEST_POINTS: f64 = 2.5;
+const MIN_POINTS: f64 = 2.5;
 
 /// Flattening energies of heights on a square, with the shortest wavelength and E* \[Pa\]. See [`RelativeFlattening::measured`].
 ///

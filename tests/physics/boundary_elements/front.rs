@@ -31,7 +31,7 @@ fn half_width(problem: &Problem, state: &State, row: usize) -> f64 {
     let edge = |sense: isize| {
         let gap = |step: isize| {
             let point = row * COLUMNS + (middle as isize + sense * step) as usize;
-            state.displacement[point] - state.approach - problem.heights[point]
+            state.displacement[point] - state.mean_penetration - problem.heights[point]
         };
         let first = (0..middle as isize - 1).find(|step| gap(*step) > problem.law.contact_gap()).unwrap();
         let (mut low, mut high) = (-3.0, 6.0);
@@ -67,7 +67,7 @@ fn amplitude(rows: usize) -> (f64, [f64; 2]) {
     let mut minimiser = Minimiser::new(&problem).unwrap();
     let mut state = problem.apart(0.0).unwrap();
     for step in 0..=6 {
-        state.approach = height + 0.05 * h * f64::from(step);
+        state.mean_penetration = height + 0.05 * h * f64::from(step);
         settle(&problem, &mut state, |state| minimiser.minimise(&problem, state, accuracy(1e-6)));
     }
     let widths: Vec<f64> = (0..rows).map(|row| half_width(&problem, &state, row)).collect();

@@ -70,7 +70,7 @@ fn results(problem: &Problem, cycle: &Cycle) -> [f64; 5] {
     let points = problem.heights.len() as f64;
     let (side, turn) = (points.sqrt(), &cycle.turning[0].last);
     let (area, _, tension) = sums(cycle);
-    [cycle.events.len() as f64, turn.totals.contact as f64 / points, turn.approach / side, tension / points, area / points / side]
+    [cycle.events.len() as f64, turn.totals.contact as f64 / points, turn.mean_penetration / side, tension / points, area / points / side]
 }
 
 /// The pinned results as a text, which a [version](crate::versions) of the method has.

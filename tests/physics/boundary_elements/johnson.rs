@@ -46,7 +46,7 @@ fn computed(alpha: f64, n: usize, attraction: Attraction, range: Option<f64>) ->
     let cycle = cycle(&problem, 0.05 * unit, 0.0125 * (gap - 1.0) * h, 1e-3);
     assert!(cycle.steps.iter().all(|s| s.converged));
     let (loop_area, events, tension) = sums(&cycle);
-    let off = 1.0 - cycle.steps.last().unwrap().approach / h;
+    let off = 1.0 - cycle.steps.last().unwrap().mean_penetration / h;
     [loop_area / (unit * h) / loss, -tension / unit / least, off / gap, (loop_area - events).abs() / loop_area]
 }
 
@@ -83,7 +83,7 @@ fn val_energy_release_rate_along_a_loop() {
     let cycle = cycle(&problem, 0.05 * PI * h, 0.005 * h, 1e-3);
     let mut rates = Vec::new();
     for step in cycle.steps.iter().filter(|step| step.totals.contact > 32) {
-        let (load, gap) = (step.totals.load / (PI * h), 1.0 - step.approach / h);
+        let (load, gap) = (step.totals.load / (PI * h), 1.0 - step.mean_penetration / h);
         let excess = |a: f64| (PI * a).cos().powi(2) + 2.0 * load * (PI * a).sin().ln() - gap;
         let about = 0.5 * step.totals.contact as f64 / n as f64;
         let (mut low, mut high) = (0.8 * about, (1.2 * about).min(0.49));

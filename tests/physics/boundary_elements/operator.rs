@@ -39,7 +39,7 @@ fn val_plane_wave_of_the_half_space() {
 #[test]
 fn lim_work_at_a_limit_point() {
     for from in [1e-8, 1e-4, 1e-2, 0.03, 0.1, 0.3] {
-        let at = |x: f64| OnLoop { approach: x, load: x.sqrt(), stiffness: 0.5 / x.sqrt() };
+        let at = |x: f64| OnLoop { mean_penetration: x, load: x.sqrt(), stiffness: 0.5 / x.sqrt() };
         let exact = ((from + 1.0_f64).powf(1.5) - f64::powf(from, 1.5)) / 1.5;
         let Work { straight, bend, across } = work_between(at(from), at(from + 1.0));
         let error = (straight + bend - exact).abs();
@@ -121,7 +121,7 @@ fn lim_deep_overlap_of_morse() {
 /// The least load of a step is between its ends where the load has a minimum there, to the square of a part of the step, and at an end otherwise.
 #[test]
 fn law_least_load_of_a_step() {
-    let at = |x: f64| OnLoop { approach: x, load: (x - 0.3) * (x - 0.3) - 0.2, stiffness: 2.0 * (x - 0.3) };
+    let at = |x: f64| OnLoop { mean_penetration: x, load: (x - 0.3) * (x - 0.3) - 0.2, stiffness: 2.0 * (x - 0.3) };
     for (a, b) in [(0.0, 1.0), (1.2, -0.5)] {
         assert!((0.0..1e-3).contains(&(least_between(at(a), at(b)) + 0.2)), "from {a} to {b}");
     }
@@ -158,7 +158,7 @@ fn law_load_and_residual_are_derivatives_of_the_energy() {
     let step = 1e-6;
     let energy = |approach: f64| {
         let mut moved = state.clone();
-        moved.approach = approach;
+        moved.mean_penetration = approach;
         problem.totals(&moved).energy
     };
     let slope = (energy(0.5 + step) - energy(0.5 - step)) / (2.0 * step);
@@ -171,7 +171,7 @@ fn law_load_and_residual_are_derivatives_of_the_energy() {
 #[test]
 fn law_work_of_a_cubic_is_exact() {
     let load = |x: f64| 1.0 + x * (0.3 + x * (-2.0 + 0.1 * x));
-    let at = |x: f64| OnLoop { approach: x, load: load(x), stiffness: 0.3 + x * (-4.0 + 0.3 * x) };
+    let at = |x: f64| OnLoop { mean_penetration: x, load: load(x), stiffness: 0.3 + x * (-4.0 + 0.3 * x) };
     let integral = |x: f64| x * (1.0 + x * (0.15 + x * (-2.0 / 3.0 + 0.025 * x)));
     for (a, b) in [(0.2, 1.1), (1.3, -0.4)] {
         let Work { straight, bend, .. } = work_between(at(a), at(b));

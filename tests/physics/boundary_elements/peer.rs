@@ -27,7 +27,7 @@ fn val_adhesion_finds_the_same_states() {
     assert!(rows.len() == 21 && largest > 50.0);
     for row in rows {
         let [approach, load, contact] = ["approach", "load", "contact_points"].map(|name| row.number(name));
-        state.approach = approach;
+        state.mean_penetration = approach;
         assert!(minimiser.minimise(&problem, &mut state, accuracy(1e-7)).converged);
         let totals = problem.totals(&state);
         assert!((totals.load - load).abs() < 1e-6 * largest, "load {} at {approach}, Adhesion has {load}", totals.load);

@@ -27,7 +27,7 @@ fn loop_to(problem: &Problem, loads: &[f64], step: f64) -> Result<Cycle, Physics
 /// Unloading from a reversal: approach, load, energy and dissipated energy of each step.
 fn unloading(cycle: &Cycle, reversal: usize) -> Vec<[f64; 4]> {
     let of = |step: &&Step| step.reversal == Some(reversal);
-    cycle.steps.iter().filter(of).map(|s| [s.approach, s.totals.load, s.totals.energy, s.dissipated]).collect()
+    cycle.steps.iter().filter(of).map(|s| [s.mean_penetration, s.totals.load, s.totals.energy, s.dissipated]).collect()
 }
 
 /// The search for a load leaves the path: the unloading from each load is, to the last bit, that of a run to this load alone, and of one to this load and

@@ -56,9 +56,9 @@ fn law_steps_of_one_length_without_halvings() {
         let max_loads = vec![0.02 * (n * n) as f64];
         let settings = Settings { halvings, ..settings(max_loads, step) };
         let cycle = run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap();
-        let top = cycle.turning[0].last.approach;
-        let elsewhere = cycle.steps.windows(2).filter(|pair| pair[1].reversal.is_some() || pair[1].approach < top - step);
-        let lengths: Vec<f64> = elsewhere.map(|pair| (pair[1].approach - pair[0].approach).abs()).collect();
+        let top = cycle.turning[0].last.mean_penetration;
+        let elsewhere = cycle.steps.windows(2).filter(|pair| pair[1].reversal.is_some() || pair[1].mean_penetration < top - step);
+        let lengths: Vec<f64> = elsewhere.map(|pair| (pair[1].mean_penetration - pair[0].mean_penetration).abs()).collect();
         assert!(lengths.len() > 20, "{} steps", lengths.len());
         lengths.iter().filter(|length| (*length / step - 1.0).abs() > 1e-9).count()
     });
@@ -78,14 +78,22 @@ fn law_reversals_lie_on_the_loading_path() {
         run(&problem, &settings, None, &mut |_| {}, &|_| {}).unwrap()
     });
     let loading: Vec<_> = long.steps.iter().filter(|step| step.reversal.is_none()).collect();
-    assert!(loading.is_sorted_by(|a, b| a.approach < b.approach));
+    assert!(loading.is_sorted_by(|a, b| a.mean_penetration < b.mean_penetration));
     for ((load, here), there) in loads.iter().zip(&long.turning).zip(&short.turning) {
         let (here, there) = (here.last, there.last);
         assert!(here.converged && (here.totals.load / load - 1.0).abs() < 1e-5, "{} for {load}", here.totals.load);
-        assert!((here.approach - there.approach).abs() < 1e-3, "approach {}, in short steps {}", here.approach, there.approach);
+        assert!(
+            (here.mean_penetration - there.mean_penetration).abs() < 1e-3,
+            "approach {}, in short steps {}",
+            here.mean_penetration,
+            there.mean_penetration
+        );
         let area = here.totals.contact as f64 / there.totals.contact as f64;
         assert!((area - 1.0).abs() < 1e-3, "area {area} of that in short steps");
-        let near = loading.iter().filter(|step| (step.approach - here.approach).abs() < 0.16 && step.approach < here.approach).count();
+        let near = loading
+            .iter()
+            .filter(|step| (step.mean_penetration - here.mean_penetration).abs() < 0.16 && step.mean_penetration < here.mean_penetration)
+            .count();
         assert!(near <= 5, "{near} steps to the reversal");
     }
 }
@@ -100,12 +108,12 @@ fn law_weak_adhesion_has_the_area_of_equal_steps() {
     let (area, events, _) = sums(&cycle);
     assert!((events / area - 1.0).abs() < 0.06, "events {events}, loop {area}");
     let (mut minimiser, mut state) = (Minimiser::new(&problem).unwrap(), problem.apart(0.0).unwrap());
-    let (most, steps) = (cycle.turning[0].last.approach, 600);
+    let (most, steps) = (cycle.turning[0].last.mean_penetration, 600);
     let mut path = Vec::new();
     for k in (0..=steps).chain((-20..steps).rev()) {
-        state.approach = most * f64::from(k) / f64::from(steps);
+        state.mean_penetration = most * f64::from(k) / f64::from(steps);
         let totals = settle(&problem, &mut state, |state| minimiser.minimise(&problem, state, super::accuracy(1e-5)));
-        path.push((state.approach, totals.load));
+        path.push((state.mean_penetration, totals.load));
     }
     let equal: f64 = path.windows(2).map(|w| 0.5 * (w[0].1 + w[1].1) * (w[1].0 - w[0].0)).sum();
     assert!((area / equal - 1.0).abs() < 0.08, "loop {area}, in equal steps {equal}");
@@ -150,7 +158,7 @@ fn law_stiffness_is_the_slope_of_the_load() {
     let steps = cycle(&problem, 0.012 * (n * n) as f64, 0.01, 0.03).steps;
     let quiet = steps.windows(2).filter(|pair| pair[1].dissipated == 0.0 && pair[1].totals.contact == pair[0].totals.contact);
     let changes = quiet.map(|pair| {
-        let length = pair[1].approach - pair[0].approach;
+        let length = pair[1].mean_penetration - pair[0].mean_penetration;
         (pair[1].totals.load - pair[0].totals.load, 0.5 * (pair[0].stiffness + pair[1].stiffness) * length)
     });
     let changes: Vec<(f64, f64)> = changes.collect();
@@ -188,7 +196,7 @@ fn law_three_minimisers_reach_one_state() {
         minimiser.preconditioner.split = split;
         let mut state = problem.apart(0.0).unwrap();
         for k in 0..12 {
-            state.approach = 0.08 * f64::from(k);
+            state.mean_penetration = 0.08 * f64::from(k);
             let accuracy = super::accuracy(1e-7);
             settle(&problem, &mut state, |state| match newton {
                 true => minimiser.newton(&problem, state, accuracy).unwrap(),
@@ -219,7 +227,7 @@ fn law_events_on_patches_end_as_on_the_whole_grid() {
         let mut state = problem.apart(0.0).unwrap();
         let mut path = Vec::new();
         for k in 0..40 {
-            state.approach = 0.4 * f64::from(k);
+            state.mean_penetration = 0.4 * f64::from(k);
             path.push(settle(&problem, &mut state, |state| equilibrium.find(&problem, state, super::accuracy(1e-5)).unwrap()));
         }
         (path, equilibrium.transforms(0))

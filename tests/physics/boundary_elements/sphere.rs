@@ -87,7 +87,7 @@ fn val_hertz() {
     let force = 4.0 / 3.0 * 20.0_f64.powi(3) / radius;
     let cycle = cycle(&problem, force, 0.1, f64::INFINITY);
     let last = cycle.turning[0].last;
-    let own = (last.approach + IMAGES * force / (PI * n as f64)) * (1.0 - 1.0 / (2.0 * PI * 20.0));
+    let own = (last.mean_penetration + IMAGES * force / (PI * n as f64)) * (1.0 - 1.0 / (2.0 * PI * 20.0));
     let hertz = 4.0 / 3.0 * radius.sqrt() * own.powf(1.5);
     assert!((hertz / last.totals.load - 1.0).abs() < 2e-3, "load {} and Hertz {hertz}", last.totals.load);
     assert!((PI * radius * own / last.totals.contact as f64 - 1.0).abs() < 0.05, "area {}", last.totals.contact);

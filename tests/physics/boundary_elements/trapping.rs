@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 const ALPHA: f64 = 0.3;
 
 fn advance(problem: &Problem, minimiser: &mut Minimiser, state: &mut State, approach: f64) -> f64 {
-    state.approach = approach;
+    state.mean_penetration = approach;
     let accuracy = Accuracy { rms: 1e-7, largest: 1e-5, iterations: 20_000 };
     settle(problem, state, |state| minimiser.minimise(problem, state, accuracy)).load
 }

@@ -1,15 +1,15 @@
 //! Constants of contacts and of the rules for contacts that meet.
 
 use super::merging::MAX_TENSILE_LOAD;
-use super::problem::DEEPEST_JUMP_IN;
-use super::transition::BEFORE_CENTRE;
+use super::problem::MAX_WU_JUMP_IN;
+use super::transition::ABSORPTION_DISTANCE;
 use crate::constants::Constant;
 
 /// Constants of contacts.
 pub(crate) const CONSTANTS: &[Constant] = &[
     Constant::new(
         "distance of absorption",
-        &[BEFORE_CENTRE],
+        &[ABSORPTION_DISTANCE],
         "of the radius",
         "A contact absorbs an asperity at this distance from its edge, where the slope of its field is still finite.",
         "transition",
@@ -23,7 +23,7 @@ pub(crate) const CONSTANTS: &[Constant] = &[
     ),
     Constant::new(
         "largest magnitude of Wu's `δ_in`",
-        &[DEEPEST_JUMP_IN],
+        &[MAX_WU_JUMP_IN],
         "`δ_off`",
         "Wu's criterion is not used beyond this penetration.",
         "problem",

@@ -17,7 +17,7 @@ pub struct Event {
     /// Kind of the event that causes the relaxation in which it happens.
     pub cause: EventKind,
     /// Mean penetration Δ \[m\] at the event.
-    pub approach_m: f64,
+    pub mean_penetration_m: f64,
     /// Number of its avalanche, counted along the branch.
     pub avalanche: u64,
     /// Load and area before the event.

@@ -158,7 +158,7 @@ impl Problem {
     }
 
     /// The contact that two contacts merge into at a mean penetration \[m\], without its height.
-    pub(crate) fn merged(&self, [i, j]: [usize; 2], [a, b]: [f64; 2], approach_m: f64) -> Merged {
+    pub(crate) fn merged(&self, [i, j]: [usize; 2], [a, b]: [f64; 2], mean_penetration_m: f64) -> Merged {
         let radius = a.hypot(b);
         let (load, root) = self.joint_load([i, j], [a, b]);
         let (from, way) = (*self.place(i), self.neighbours.apart(self.place(j), self.place(i)));
@@ -172,7 +172,7 @@ impl Problem {
             height_m: 0.0,
             offset_j: 0.0,
             release_m: (1.0 - self.numerics.events.radius_resolution) * radius,
-            approach_m,
+            mean_penetration_m,
         }
     }
 }

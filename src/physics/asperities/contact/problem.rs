@@ -6,7 +6,7 @@ use crate::PhysicsError;
 use crate::asperities::field::spot_field::{Spot, spot_field_as_printed};
 use crate::asperities::field::{FieldSum, Spots, choose};
 use crate::asperities::numerics::{Events, Numerics};
-use crate::jkr::{Asperity, LEAST_TABOR};
+use crate::jkr::{Asperity, MIN_TABOR};
 use crate::math::grown::Grown;
 use crate::model::{Boundary, Coalescence, Interaction as Kind, JumpIn, Material, Slips};
 use crate::surface::summits::Summit;
@@ -75,7 +75,7 @@ pub struct Problem {
 ///
 /// Wu's criterion (Eq 3) is beyond the end of the JKR branch at Tabor parameters from 0.2 to 1.
 /// An asperity that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
-pub(super) const DEEPEST_JUMP_IN: f64 = 0.95;
+pub(super) const MAX_WU_JUMP_IN: f64 = 0.95;
 
 impl Problem {
     /// Sets the numerical choices.
@@ -111,7 +111,7 @@ impl Problem {
         let asperities: Vec<Asperity> = summits.iter().map(of).collect::<Result<_, _>>()?;
         let range = material.interaction_range_m;
         let tabor: Vec<f64> = asperities.iter().map(|a| a.tabor(range)).collect();
-        let below = tabor.iter().filter(|mu| **mu < LEAST_TABOR).count();
+        let below = tabor.iter().filter(|mu| **mu < MIN_TABOR).count();
         let adhesive = material.work_of_adhesion_j_m2 > 0.0;
         if adhesive && rules.jump_in == JumpIn::Wu && below > 0 && !rules.allow_low_tabor {
             let smallest = tabor.iter().copied().fold(f64::INFINITY, f64::min);
@@ -123,7 +123,7 @@ impl Problem {
                 // Without adhesion there is no jump: contact begins above the penetration at which it ends, beyond rounding.
                 _ if !adhesive => 4.0 * a.jump_off_penetration(),
                 JumpIn::Jkr => 0.0,
-                JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(DEEPEST_JUMP_IN * a.jump_off_penetration()),
+                JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(MAX_WU_JUMP_IN * a.jump_off_penetration()),
             })
             .collect();
         let positions: Vec<[f64; 2]> = summits.iter().map(|s| places.inward([s.x_m, s.y_m])).collect();

@@ -50,8 +50,8 @@ impl State {
     ///
     /// # Errors
     /// Asperity numbers, including absorbing ones, must belong to the problem. A contact radius must be positive.
-    pub fn restored(problem: &Problem, approach_m: f64, merged: &[Merged], rows: &[Kept]) -> Result<Self, PhysicsError> {
-        let mut state = Self::free(problem, approach_m);
+    pub fn restored(problem: &Problem, mean_penetration_m: f64, merged: &[Merged], rows: &[Kept]) -> Result<Self, PhysicsError> {
+        let mut state = Self::free(problem, mean_penetration_m);
         let inside = problem.places.inside();
         let number = |i: usize| inside.get(i).copied().unwrap_or(i);
         for spot in merged {

@@ -33,7 +33,7 @@ pub enum Status {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Mean penetration Δ \[m\], 0 at the highest summit.
-    pub approach_m: f64,
+    pub mean_penetration_m: f64,
     /// Status of each asperity.
     pub status: Vec<Status>,
     /// Contact radius of each asperity \[m\], 0 out of contact.
@@ -63,10 +63,10 @@ pub struct State {
 impl State {
     /// State at a mean penetration \[m\] with all asperities free.
     #[must_use]
-    pub fn free(problem: &Problem, approach_m: f64) -> Self {
+    pub fn free(problem: &Problem, mean_penetration_m: f64) -> Self {
         let n = problem.len();
         Self {
-            approach_m,
+            mean_penetration_m,
             status: vec![Status::Free; n],
             radius: vec![0.0; n],
             barred: vec![false; n],

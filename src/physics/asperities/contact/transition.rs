@@ -1,7 +1,7 @@
 //! Transitions of asperities: their kinds, the resulting status, and transitions during a relaxation.
 //!
 //! An asperity jumps into contact when its penetration reaches its jump-in penetration, and out of contact at the end of its branch.
-//! It is absorbed when a larger spot reaches its centre, to [`BEFORE_CENTRE`], and released when that spot has withdrawn from it.
+//! It is absorbed when a larger spot reaches its centre, to [`ABSORPTION_DISTANCE`], and released when that spot has withdrawn from it.
 //!
 //! Absorption removes a load and so moves the absorbing spot. If the load was tensile, the spot shrinks and would release
 //! the asperity at once, which would enlarge the spot again, in an endless cycle.
@@ -17,16 +17,16 @@ use crate::model::Coalescence;
 /// Distance from the edge of a contact, over its radius, at which it absorbs an asperity.
 ///
 /// The slope of its field is infinite at its edge. Nearer to it, Newton's method mostly does not find the equilibrium of all contacts.
-pub(super) const BEFORE_CENTRE: f64 = 1e-4;
+pub(super) const ABSORPTION_DISTANCE: f64 = 1e-4;
 
 /// Radius \[m\] at which a contact absorbs an asperity at a distance \[m\].
 pub(crate) fn absorbing_radius(distance: f64) -> f64 {
-    distance / (1.0 + BEFORE_CENTRE)
+    distance / (1.0 + ABSORPTION_DISTANCE)
 }
 
 /// Distance \[m\] up to which a contact of a radius \[m\] absorbs asperities.
 pub(crate) fn absorbed_within(radius: f64) -> f64 {
-    radius * (1.0 + BEFORE_CENTRE)
+    radius * (1.0 + ABSORPTION_DISTANCE)
 }
 
 /// Change of one asperity's status.

@@ -20,9 +20,9 @@ pub(super) const MIN_ASPERITIES: usize = 300;
 
 /// Errors of the fast sum relative to the largest displacement.
 ///
-/// `TOLERANCE` is for equilibria, `ROUGH_TOLERANCE` for intermediate solutions.
+/// `TOLERANCE` is for equilibria, `INTERMEDIATE_TOLERANCE` for intermediate solutions.
 pub(super) const TOLERANCE: f64 = 1e-8;
-pub(super) const ROUGH_TOLERANCE: f64 = 1e-6;
+pub(super) const INTERMEDIATE_TOLERANCE: f64 = 1e-6;
 
 /// Precision of equilibria where all sums are direct.
 pub(super) const DIRECT_TOLERANCE: f64 = 1e-10;
@@ -34,7 +34,7 @@ pub(super) const DIRECT_TOLERANCE: f64 = 1e-10;
 pub fn choose(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> FieldSum {
     let many = positions.len() >= MIN_ASPERITIES && matches!(kind, Kind::Spots | Kind::Point);
     let to = |tolerance| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, tolerance);
-    let fast = many.then(|| PerPrecision { full: to(TOLERANCE), rough: to(ROUGH_TOLERANCE) });
+    let fast = many.then(|| PerPrecision { full: to(TOLERANCE), rough: to(INTERMEDIATE_TOLERANCE) });
     let many = if boundary == Boundary::Periodic { FAST_FROM_PERIODIC } else { FAST_FROM_ISOLATED };
     let full = DirectSum::new(positions, length_m, material, kind, boundary, slips);
     let rough = full.to_six_digits();
@@ -47,7 +47,7 @@ pub enum SumPrecision {
     /// That of an equilibrium: a direct sum is exact.
     Full,
     /// Six digits, for intermediate solutions.
-    Rough,
+    Intermediate,
 }
 
 /// A method of summation in both precisions.
@@ -61,7 +61,7 @@ impl<T> PerPrecision<T> {
     fn of(&self, precision: SumPrecision) -> &T {
         match precision {
             SumPrecision::Full => &self.full,
-            SumPrecision::Rough => &self.rough,
+            SumPrecision::Intermediate => &self.rough,
         }
     }
 }
@@ -83,7 +83,7 @@ impl FieldSum {
 
     /// Sum for targets that are the spots themselves.
     ///
-    /// [`SumPrecision::Rough`] allows an error of 1e-6 if the fast sum is used; the direct sum is exact.
+    /// [`SumPrecision::Intermediate`] allows an error of 1e-6 if the fast sum is used; the direct sum is exact.
     pub(crate) fn for_spots(&self, spots: &Spots, precision: SumPrecision) -> &dyn Interaction {
         match &self.fast {
             Some(fast) if spots.columns.len() >= self.many => fast.of(precision),
@@ -137,7 +137,7 @@ impl FieldSum {
         self.direct.full.at_one(spots, target)
     }
 
-    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`]. Rough sums have six digits of the image sums.
+    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`]. Intermediate sums have six digits of the image sums.
     pub(crate) fn rows(
         &self,
         spots: &Spots,
@@ -169,7 +169,7 @@ impl Interaction for FieldSum {
         self.for_spots(spots, SumPrecision::Full).linearise(spots, displacements, tangent, effort);
     }
 
-    fn approach(
+    fn along_path(
         &self,
         spots: &Spots,
         rates: &[f64],
@@ -178,6 +178,6 @@ impl Interaction for FieldSum {
         kept: &mut Tangent,
         effort: &mut Effort,
     ) {
-        self.for_targets(spots, targets, SumPrecision::Full).approach(spots, rates, targets, found, kept, effort);
+        self.for_targets(spots, targets, SumPrecision::Full).along_path(spots, rates, targets, found, kept, effort);
     }
 }

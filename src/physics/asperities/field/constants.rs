@@ -1,7 +1,7 @@
 //! Constants of direct and fast sums.
 
 use super::choose::{
-    DIRECT_TOLERANCE, FAST_FROM_ISOLATED, FAST_FROM_PERIODIC, FAST_FROM_TABLE, MIN_ASPERITIES, ROUGH_TOLERANCE, TOLERANCE,
+    DIRECT_TOLERANCE, FAST_FROM_ISOLATED, FAST_FROM_PERIODIC, FAST_FROM_TABLE, INTERMEDIATE_TOLERANCE, MIN_ASPERITIES, TOLERANCE,
 };
 use super::direct::TABLE_LIMIT;
 use crate::constants::Constant;
@@ -15,7 +15,13 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "The second value holds where all sums are direct. The same on the grid of exact global solves.",
         "choose",
     ),
-    Constant::new("error of fast sums", &[TOLERANCE, ROUGH_TOLERANCE], "largest displacement", "At output steps, and elsewhere.", "choose"),
+    Constant::new(
+        "error of fast sums",
+        &[TOLERANCE, INTERMEDIATE_TOLERANCE],
+        "largest displacement",
+        "At output steps, and elsewhere.",
+        "choose",
+    ),
     Constant::new("asperities with fast sums", &[MIN_ASPERITIES as f64], "", "With fewer, all sums are direct.", "choose"),
     Constant::new(
         "contacts with fast sums",

@@ -282,7 +282,7 @@ impl Interaction for DirectSum {
         tangent.set_dense(n, matrix);
     }
 
-    fn approach(
+    fn along_path(
         &self,
         spots: &Spots,
         rates: &[f64],

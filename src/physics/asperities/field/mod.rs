@@ -146,5 +146,13 @@ pub trait Interaction: Sync {
     ///
     /// Writes the displacement and `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j` to `found`. With `rates` = da_j/dδ the latter is dŵ_i/dδ.
     /// The geometry is cached in `kept` for the next call.
-    fn approach(&self, spots: &Spots, rates: &[f64], targets: &[usize], found: [&mut Vec<f64>; 2], kept: &mut Tangent, effort: &mut Effort);
+    fn along_path(
+        &self,
+        spots: &Spots,
+        rates: &[f64],
+        targets: &[usize],
+        found: [&mut Vec<f64>; 2],
+        kept: &mut Tangent,
+        effort: &mut Effort,
+    );
 }

@@ -49,23 +49,23 @@ impl EquilibriumPath {
         let Some(entered) = self.insert_or_remove(transition, before)? else { return Ok(None) };
         let problem = &*self.problem();
         let uncovers = transition.kind == EventKind::Uncover;
-        let approach = self.neighbourhood.local.approach;
+        let mean_penetration = self.neighbourhood.local.mean_penetration;
         let mut applied = vec![entered];
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         let start = local.radius.clone();
-        if !(local.solve(problem, Hold::Approach, effort).is_ok() && local.rates(problem).1) {
+        if !(local.solve(problem, Hold::MeanPenetration, effort).is_ok() && local.rates(problem).1) {
             local.radius = start;
             match local.relax(problem, uncovers.then_some(&transition), effort) {
                 Ok(further) => applied.extend(further),
                 Err(_) if uncovers => {
-                    self.keep_covered(transition.asperity, approach);
+                    self.keep_covered(transition.asperity, mean_penetration);
                     return Ok(None);
                 }
                 Err(reason) => return Err(reason.into()),
             }
         }
         if uncovers && self.would_be_undone(&transition, &applied) {
-            self.keep_covered(transition.asperity, approach);
+            self.keep_covered(transition.asperity, mean_penetration);
             return Ok(None);
         }
         Ok(Some(applied))
@@ -109,8 +109,8 @@ impl EquilibriumPath {
     fn insert_uncovered(&mut self, transition: Transition) {
         let problem = &*self.problem();
         let i = transition.asperity;
-        let approach = self.neighbourhood.local.approach;
-        let contacts: Vec<(usize, f64)> = self.predictor.radii(problem, approach);
+        let mean_penetration = self.neighbourhood.local.mean_penetration;
+        let contacts: Vec<(usize, f64)> = self.predictor.radii(problem, mean_penetration);
         let displacement = self.solver.displacement(&contacts, i);
         let local = &mut self.neighbourhood.local;
         // The displacement by the outside changes here as it does at the covering contact.
@@ -118,7 +118,7 @@ impl EquilibriumPath {
         let place = local.place(problem, i, displacement, drift, &mut self.solver.effort);
         // The displacement by contacts as they are predicted contains what is pending for it.
         self.pending.set_applied(i);
-        match problem.asperities[i].radius_at_penetration(approach + problem.heights[i] - displacement) {
+        match problem.asperities[i].radius_at_penetration(mean_penetration + problem.heights[i] - displacement) {
             Some(radius) => {
                 local.insert(place, radius);
                 if problem.merges() {
@@ -144,7 +144,7 @@ impl EquilibriumPath {
 
     /// Postpones an uncovering until the covering contact has shrunk further. Where that has left, the asperity is absorbed by the contact
     /// that covers it; without one it is free, and blocked until its penetration falls below the jump-in.
-    pub(super) fn keep_covered(&mut self, i: usize, approach: f64) {
+    pub(super) fn keep_covered(&mut self, i: usize, mean_penetration: f64) {
         let Status::Covered { by, release_m } = self.predictor.state.status[i] else { return };
         let (radius, retried) = (&self.predictor.state.radius, self.solver.problem.numerics.events.retried_release);
         match self.predictor.state.carrier(by) {
@@ -159,8 +159,8 @@ impl EquilibriumPath {
                 self.predictor.set(i, Status::Free, 0.0);
                 self.predictor.state.barred[i] = true;
                 self.predictor.traces[i].forget();
-                let totals = self.predictor.totals(approach);
-                self.log.note((Transition::uncover(i, by), SpotStatus::Free), approach, totals);
+                let totals = self.predictor.totals(mean_penetration);
+                self.log.note((Transition::uncover(i, by), SpotStatus::Free), mean_penetration, totals);
                 let gained_j = self.free_parts(i).1;
                 self.log.charge(-gained_j);
             }

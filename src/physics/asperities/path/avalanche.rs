@@ -24,7 +24,7 @@ impl EquilibriumPath {
     /// Applies a transition that is due at the present mean penetration, with its avalanche.
     pub(super) fn start_avalanche(&mut self, first: Transition) -> Result<(), Rejection> {
         self.log.begin_avalanche();
-        self.gather(&first, Some(self.state().approach_m));
+        self.gather(&first, Some(self.state().mean_penetration_m));
         self.advance_members(&[], None);
         let mut avalanche = Avalanche::default();
         self.apply(first, None, &mut avalanche)?;
@@ -35,7 +35,7 @@ impl EquilibriumPath {
     /// asperities are returned. A transition that would undo an earlier one waits for the path to continue. Nothing is returned if the
     /// propagation does not end or the avalanche is large: the global problem is to be solved.
     pub(super) fn run_avalanche(&mut self, mut avalanche: Avalanche) -> Result<Option<Vec<usize>>, Rejection> {
-        let approach = self.neighbourhood.local.approach;
+        let mean_penetration = self.neighbourhood.local.mean_penetration;
         let mut solves = 0;
         let mut propagated = true;
         loop {
@@ -54,8 +54,8 @@ impl EquilibriumPath {
                 self.postponed.extend(due.iter().chain(&coalescing).map(|trigger| trigger.transition.asperity));
                 break;
             };
-            self.count_trial(approach, transition.asperity)?;
-            self.gather(&transition, Some(approach));
+            self.count_trial(mean_penetration, transition.asperity)?;
+            self.gather(&transition, Some(mean_penetration));
             if transition.keeps_contacts() || self.has_pending() {
                 solves += 1;
                 let few = self.numerics().events.avalanche_solves;
@@ -92,7 +92,7 @@ impl EquilibriumPath {
                     let edge = (1.0 - problem.numerics.events.radius_resolution) * release_m;
                     if self.predictor.state.radius[by] < edge {
                         // The covering contact has shrunk by absorbing it, or has left since.
-                        self.keep_covered(i, self.neighbourhood.local.approach);
+                        self.keep_covered(i, self.neighbourhood.local.mean_penetration);
                     } else {
                         // It is at the edge, and rounding must not decide whether it has shrunk.
                         self.predictor.state.status[i] = Status::Covered { by, release_m: edge };
@@ -142,7 +142,7 @@ impl EquilibriumPath {
         });
         self.postponed.extend(postponed);
         for i in carried {
-            self.keep_covered(i, self.neighbourhood.local.approach);
+            self.keep_covered(i, self.neighbourhood.local.mean_penetration);
         }
         due
     }

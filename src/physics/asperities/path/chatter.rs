@@ -70,7 +70,7 @@ mod tests {
     use super::{ChatterGuard, Transition};
     use crate::asperities::numerics::Events;
 
-    const MOST: u8 = Events::DEFAULT.changes_per_asperity;
+    const MAX_CHANGES: u8 = Events::DEFAULT.changes_per_asperity;
 
     #[test]
     fn law_a_merged_contact_goes_on_with_the_changes_of_its_parts() {
@@ -78,14 +78,14 @@ mod tests {
         guard.grow(2);
         let merge = Transition::merge(0, 1);
         // Each merging of the same pair makes a new contact; its splitting is counted with it.
-        for number in 2..2 + usize::from(MOST) {
-            assert!(guard.allows(&merge, MOST));
+        for number in 2..2 + usize::from(MAX_CHANGES) {
+            assert!(guard.allows(&merge, MAX_CHANGES));
             guard.join([0, 1]);
             let split = Transition::split(number);
-            assert!(guard.allows(&split, MOST));
+            assert!(guard.allows(&split, MAX_CHANGES));
             guard.count(number);
         }
-        assert!(!guard.allows(&merge, MOST));
+        assert!(!guard.allows(&merge, MAX_CHANGES));
     }
 
     #[test]
@@ -93,17 +93,17 @@ mod tests {
         let mut guard = ChatterGuard::default();
         guard.grow(2);
         let change = |asperity| Transition::cover(asperity, 2);
-        for _ in 0..MOST {
-            assert!(guard.allows(&change(1), MOST));
+        for _ in 0..MAX_CHANGES {
+            assert!(guard.allows(&change(1), MAX_CHANGES));
             guard.count(1);
         }
-        assert!(!guard.allows(&change(1), MOST) && guard.allows(&change(0), MOST));
-        assert!(guard.allows(&Transition::jump_off(1), MOST));
+        assert!(!guard.allows(&change(1), MAX_CHANGES) && guard.allows(&change(0), MAX_CHANGES));
+        assert!(guard.allows(&Transition::jump_off(1), MAX_CHANGES));
         guard.freeze(1);
         guard.freeze(1);
         assert_eq!(guard.frozen_count(), 1);
         guard.restart();
-        assert!(guard.allows(&change(1), MOST));
+        assert!(guard.allows(&change(1), MAX_CHANGES));
         guard.clear_frozen();
         assert_eq!(guard.frozen_count(), 0);
     }

@@ -1,6 +1,6 @@
 //! Global corrector: the contact solved at the end of an increment, and new predictors of everything.
 
-use super::accuracy::Arrival;
+use super::arrival::Arrival;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
@@ -129,7 +129,7 @@ impl EquilibriumPath {
     /// Replaces all predictors after a global solve, and counts the work since the last one.
     fn restart_predictors(&mut self, rates: &[f64], since: Since, pending: &[f64]) {
         let problem = &*self.problem();
-        let target = self.state().approach_m;
+        let target = self.state().mean_penetration_m;
         let has_jumped = since != Since::Growth;
         if has_jumped {
             self.log.pass(target, self.predictor.totals(target).load_n);
@@ -159,7 +159,7 @@ impl EquilibriumPath {
         } else {
             self.log.pass(target, load);
         }
-        let merged_here = |number: &usize| self.state().merged[number - problem.summits()].approach_m == target;
+        let merged_here = |number: &usize| self.state().merged[number - problem.summits()].mean_penetration_m == target;
         for number in (problem.summits()..problem.len()).filter(merged_here).collect::<Vec<_>>() {
             self.predictor.keep_merged(problem, number);
         }
@@ -171,7 +171,7 @@ impl EquilibriumPath {
     fn replace_traces(&mut self, rates: &[f64], since: Since, pending: &[f64], mut grown: f64) -> (f64, f64) {
         let problem = &*self.problem();
         let has_jumped = since != Since::Growth;
-        let target = self.state().approach_m;
+        let target = self.state().mean_penetration_m;
         let mut relaxed = 0.0;
         for (k, rate) in rates.iter().enumerate() {
             let i = self.state().contacts[k];
@@ -197,7 +197,7 @@ impl EquilibriumPath {
     /// on a grid of mean penetrations. Between grid points, only asperities near their jump-in are evaluated.
     fn predict_jump_ins(&mut self, rates: &[f64]) {
         let problem = &*self.problem();
-        let target = self.state().approach_m;
+        let target = self.state().mean_penetration_m;
         let all = self.solver.begins_block(target);
         let near = |i: &usize| {
             let trace = &self.predictor.traces[*i];

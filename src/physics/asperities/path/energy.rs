@@ -51,9 +51,9 @@ impl EnergyLedger {
     }
 
     /// Work of the expected change of the load up to a mean penetration \[J\]; from there on the change is larger by `more` \[N\].
-    pub(super) fn expect_load(&mut self, approach: f64, more: f64) -> f64 {
-        let work = self.expected_n * (approach - self.expected_at);
-        self.expected_at = approach;
+    pub(super) fn expect_load(&mut self, mean_penetration: f64, more: f64) -> f64 {
+        let work = self.expected_n * (mean_penetration - self.expected_at);
+        self.expected_at = mean_penetration;
         self.expected_n += more;
         work
     }
@@ -64,13 +64,13 @@ impl EnergyLedger {
     }
 
     /// Closes the balance at a global solve with the potential \[J\], and opens the next one.
-    pub(super) fn close(&mut self, log: &mut EventLog, approach: f64, potential: f64) {
+    pub(super) fn close(&mut self, log: &mut EventLog, mean_penetration: f64, potential: f64) {
         let dissipated: f64 = log.events[self.events..].iter().map(|event| event.energy_lost_j).sum();
         if std::mem::take(&mut self.open) {
             log.charge(self.balance - (potential + dissipated - log.work_j));
         }
         self.balance = potential - log.work_j;
-        self.at = approach;
+        self.at = mean_penetration;
         self.events = log.events.len();
     }
 }

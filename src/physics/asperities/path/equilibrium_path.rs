@@ -1,6 +1,6 @@
 //! State of a path, and its increments.
 
-use super::accuracy::Arrival;
+use super::arrival::Arrival;
 use super::chatter::ChatterGuard;
 use super::checkpoint::Checkpoint;
 use super::energy::EnergyLedger;
@@ -57,7 +57,7 @@ pub(super) struct Frame {
 impl EquilibriumPath {
     /// A path without a history.
     pub(super) fn new(problem: Arc<Problem>, predictor: Predictor, frame: Frame, steps: StepControl) -> Self {
-        let (n, approach) = (problem.len(), predictor.state.approach_m);
+        let (n, mean_penetration) = (problem.len(), predictor.state.mean_penetration_m);
         let mut chatter = ChatterGuard::default();
         chatter.grow(n);
         Self {
@@ -65,7 +65,7 @@ impl EquilibriumPath {
             predictor,
             pending: PendingField::new(n),
             neighbourhood: Neighbourhood::default(),
-            energy: EnergyLedger::new(approach, 0, 0.0),
+            energy: EnergyLedger::new(mean_penetration, 0, 0.0),
             steps,
             chatter,
             postponed: Vec::new(),
@@ -102,11 +102,6 @@ impl EquilibriumPath {
 
     pub(crate) fn effort(&self) -> Effort {
         self.solver.effort
-    }
-
-    /// Adds the effort of an excursion.
-    pub(crate) fn add_effort(&mut self, effort: Effort) {
-        self.solver.effort += effort;
     }
 
     /// True if the state is exact and may be written down.
@@ -147,7 +142,7 @@ impl EquilibriumPath {
     }
 
     /// Gathers the neighbourhood of a transition at a mean penetration \[m\] or where its contacts were known last.
-    pub(super) fn gather(&mut self, transition: &Transition, approach: Option<f64>) {
+    pub(super) fn gather(&mut self, transition: &Transition, mean_penetration: Option<f64>) {
         let interval = self.numerics().solver.free_interval * self.solver.problem.rms_height_m;
         let within = Surroundings {
             problem: &self.solver.problem,
@@ -157,7 +152,7 @@ impl EquilibriumPath {
             scale: self.frame.scale,
             displaced: self.out_of_reach(interval + self.steps.longest()),
         };
-        self.neighbourhood.gather(&within, transition, approach, &mut self.solver.effort);
+        self.neighbourhood.gather(&within, transition, mean_penetration, &mut self.solver.effort);
     }
 
     /// Advances by one increment, not beyond `bound` \[m\].
@@ -165,7 +160,7 @@ impl EquilibriumPath {
         let checkpoint = self.checkpoint();
         loop {
             self.steps.begin_attempt();
-            let here = self.state().approach_m;
+            let here = self.state().mean_penetration_m;
             let target = self.steps.target(here, bound);
             let attempt = self.run_and_correct(target, bound).and_then(|()| self.check_numbers(checkpoint.events));
             let rejection = match attempt {
@@ -195,9 +190,9 @@ impl EquilibriumPath {
     /// Runs the events before `target` and solves the global problem there; in between too, after events that move all of the contact.
     fn run_and_correct(&mut self, target: f64, bound: Option<f64>) -> Result<(), Rejection> {
         let (strict, precision) = (self.steps.is_strict(), self.precision_at(target, bound));
-        while let Some(approach) = self.run_events(target)? {
-            let there = approach == target;
-            self.correct(approach, Arrival::Jump, if there { precision } else { self.precision_between() })?;
+        while let Some(mean_penetration) = self.run_events(target)? {
+            let there = mean_penetration == target;
+            self.correct(mean_penetration, Arrival::Jump, if there { precision } else { self.precision_between() })?;
             if there {
                 return Ok(());
             }
@@ -228,11 +223,11 @@ impl EquilibriumPath {
     }
 
     /// Counts the trial of a transition, and ends an increment whose trials go on without end.
-    pub(super) fn count_trial(&mut self, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
+    pub(super) fn count_trial(&mut self, mean_penetration_m: f64, asperity: usize) -> Result<(), PhysicsError> {
         let problem = &*self.problem();
         let limits = &problem.numerics.events;
         let most = limits.trials_per_asperity * (problem.len() + limits.trials_offset);
-        self.steps.count_trial(most, approach_m, problem.number(asperity))
+        self.steps.count_trial(most, mean_penetration_m, problem.number(asperity))
     }
 
     /// The error of an increment that was rejected for good.
@@ -242,7 +237,7 @@ impl EquilibriumPath {
             Rejection::NotConverged(reason) => reason,
         };
         LoopError::NoEquilibrium {
-            approach_m: self.state().approach_m,
+            mean_penetration_m: self.state().mean_penetration_m,
             reason: reason.reason,
             residual_m: reason.residual_m,
             asperity: self.problem().number(reason.asperity),

@@ -29,7 +29,7 @@ pub(crate) struct EventLog {
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(crate) struct LoadSegment {
     /// Mean penetration and load at its end \[m, N\].
-    pub(crate) approach: f64,
+    pub(crate) mean_penetration: f64,
     pub(crate) load: f64,
     /// Smallest load on it \[N\].
     pub(crate) least: f64,
@@ -49,7 +49,13 @@ impl EventLog {
     }
 
     /// Records the transitions of one relaxation, with the status after it; the first has its energy.
-    pub(crate) fn record(&mut self, moved: &[(Transition, SpotStatus)], approach_m: f64, [before, after]: [Totals; 2], energy: f64) {
+    pub(crate) fn record(
+        &mut self,
+        moved: &[(Transition, SpotStatus)],
+        mean_penetration_m: f64,
+        [before, after]: [Totals; 2],
+        energy: f64,
+    ) {
         let Some((first, _)) = moved.first() else { return };
         self.avalanches += u64::from(std::mem::take(&mut self.fresh));
         let (cause, avalanche) = (self.cause(first.kind), self.avalanches);
@@ -57,14 +63,14 @@ impl EventLog {
         self.events.extend(moved.iter().enumerate().map(|(k, (change, status))| {
             let Transition { kind, asperity, .. } = *change;
             let (before, energy_lost_j) = if k == 0 { (before, energy) } else { (after, 0.0) };
-            Event { kind, asperity, status: *status, cause, approach_m, avalanche, before, after, energy_lost_j }
+            Event { kind, asperity, status: *status, cause, mean_penetration_m, avalanche, before, after, energy_lost_j }
         }));
     }
 
     /// Records a transition without a change of load; later charges still belong to the last relaxation.
-    pub(crate) fn note(&mut self, change: (Transition, SpotStatus), approach: f64, totals: Totals) {
+    pub(crate) fn note(&mut self, change: (Transition, SpotStatus), mean_penetration: f64, totals: Totals) {
         let charged = self.charged;
-        self.record(&[change], approach, [totals; 2], 0.0);
+        self.record(&[change], mean_penetration, [totals; 2], 0.0);
         self.charged = charged;
     }
 
@@ -82,14 +88,14 @@ impl EventLog {
     }
 
     /// Ends a segment without a jump of the load, which is known at its ends only.
-    pub(crate) fn pass(&mut self, approach: f64, load: f64) {
-        self.segments.push(LoadSegment { approach, load, least: load.min(self.last) });
+    pub(crate) fn pass(&mut self, mean_penetration: f64, load: f64) {
+        self.segments.push(LoadSegment { mean_penetration, load, least: load.min(self.last) });
         self.last = load;
     }
 
     /// Begins a segment after a jump of the load.
-    pub(crate) fn restart(&mut self, approach: f64, load: f64) {
-        self.segments.push(LoadSegment { approach, load, least: load });
+    pub(crate) fn restart(&mut self, mean_penetration: f64, load: f64) {
+        self.segments.push(LoadSegment { mean_penetration, load, least: load });
         self.last = load;
     }
 

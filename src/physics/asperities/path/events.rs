@@ -44,11 +44,11 @@ impl EquilibriumPath {
         let mut queue = self.expect_events(target);
         while let Some(at) = self.earliest(&queue) {
             let event = queue.swap_remove(at);
-            self.count_trial(event.approach, event.transition.asperity)?;
+            self.count_trial(event.mean_penetration, event.transition.asperity)?;
             let touched = match self.run_event(event, target, &mut queue)? {
                 Outcome::Absent => continue,
                 Outcome::Touched(touched) => touched,
-                Outcome::Unpropagated => return Ok(Some(self.neighbourhood.local.approach)),
+                Outcome::Unpropagated => return Ok(Some(self.neighbourhood.local.mean_penetration)),
             };
             // Predictions for the touched asperities are replaced.
             let is_touched = |i: usize| touched.binary_search(&i).is_ok();
@@ -71,7 +71,7 @@ impl EquilibriumPath {
 
     /// Position of the earliest event in the queue.
     fn earliest(&self, queue: &[PredictedEvent]) -> Option<usize> {
-        let key = |event: &PredictedEvent| (event.approach * self.frame.sense, event.transition.asperity, event.transition.kind);
+        let key = |event: &PredictedEvent| (event.mean_penetration * self.frame.sense, event.transition.asperity, event.transition.kind);
         (0..queue.len()).min_by(|a, b| {
             let (u, v) = (key(&queue[*a]), key(&queue[*b]));
             u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)).then(u.2.cmp(&v.2))
@@ -92,10 +92,10 @@ impl EquilibriumPath {
             avalanche.open.extend([Some(transition.asperity), transition.by].into_iter().flatten());
         } else {
             let Some(located) = self.locate(&event, target) else { return Ok(Outcome::Absent) };
-            let approach = self.neighbourhood.local.approach;
+            let mean_penetration = self.neighbourhood.local.mean_penetration;
             let tolerance = self.numerics().events.position_tolerance * self.problem().rms_height_m;
-            if queue.iter().any(|other| (approach - other.approach) * self.frame.sense > tolerance) {
-                queue.push(PredictedEvent { approach, ..event });
+            if queue.iter().any(|other| (mean_penetration - other.mean_penetration) * self.frame.sense > tolerance) {
+                queue.push(PredictedEvent { mean_penetration, ..event });
                 return Ok(Outcome::Absent);
             }
             self.finish_location(located, &transition, &mut avalanche);
@@ -109,7 +109,7 @@ impl EquilibriumPath {
     fn locate(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
         self.neighbourhood.set_origin();
         match self.problem().condition(&event.transition, &self.predictor.state)? {
-            Condition::Penetration { asperity, value_m } => self.locate_penetration(asperity, value_m, event.approach, target),
+            Condition::Penetration { asperity, value_m } => self.locate_penetration(asperity, value_m, event.mean_penetration, target),
             Condition::Touching { pair: [i, by] } => self.locate_merging(i, by, target),
             Condition::Shrinking { contact, value_m } => self.locate_radius(contact, value_m, RadiusChange::Shrinking, target),
             Condition::Growing { contact, value_m } => self.locate_radius(contact, value_m, RadiusChange::Growing, target),
@@ -130,7 +130,7 @@ impl EquilibriumPath {
         }
         match local.trace_curve(problem, CurveSearch { member: at, bound, target, path_sense: sense }, effort) {
             Ok(CurveEnd::Fold) => Some(Located::Fold(at)),
-            Ok(CurveEnd::Bound) if (local.approach - target) * sense <= 0.0 => Some(Located::Point),
+            Ok(CurveEnd::Bound) if (local.mean_penetration - target) * sense <= 0.0 => Some(Located::Point),
             _ => None,
         }
     }
@@ -139,7 +139,7 @@ impl EquilibriumPath {
     fn locate_penetration(&mut self, i: usize, bound: f64, predicted: f64, target: f64) -> Option<Located> {
         let (problem, sense) = (&*self.problem(), self.frame.sense);
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
-        let start = local.approach;
+        let start = local.mean_penetration;
         let watched = local.watched.iter().position(|place| place.asperity == i)?;
         if local.penetration_of(problem, watched, effort) < bound {
             // From near the predicted position, for a short way of Newton's method.
@@ -147,8 +147,9 @@ impl EquilibriumPath {
             local.ahead(problem, guess);
             local.solve(problem, Hold::Penetration(watched, bound), effort).ok()?;
         }
-        let way = (local.approach - start) * sense;
-        let inside = way >= -problem.numerics.events.position_tolerance * problem.rms_height_m && (local.approach - target) * sense <= 0.0;
+        let way = (local.mean_penetration - start) * sense;
+        let inside =
+            way >= -problem.numerics.events.position_tolerance * problem.rms_height_m && (local.mean_penetration - target) * sense <= 0.0;
         inside.then_some(Located::Point)
     }
 
@@ -158,14 +159,14 @@ impl EquilibriumPath {
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         let pair = [local.find(i)?, local.find(j)?];
         let meeting = |local: &LocalProblem| problem.meeting([i, j], pair.map(|at| local.radius[at]));
-        let (mut low, mut high) = (local.approach, target);
+        let (mut low, mut high) = (local.mean_penetration, target);
         let first = meeting(local);
         if first >= 0.0 {
             return Some(Located::Point);
         }
-        let mut go_to = |local: &mut LocalProblem, approach: f64| {
-            local.ahead(problem, approach);
-            local.solve(problem, Hold::Approach, effort).ok()?;
+        let mut go_to = |local: &mut LocalProblem, mean_penetration: f64| {
+            local.ahead(problem, mean_penetration);
+            local.solve(problem, Hold::MeanPenetration, effort).ok()?;
             Some(meeting(local))
         };
         let end = go_to(local, high).filter(|end| *end >= 0.0)?;
@@ -187,7 +188,7 @@ impl EquilibriumPath {
                 ends.narrow(End::High, trial - 0.5 * touch);
             }
         }
-        if local.approach != high {
+        if local.mean_penetration != high {
             go_to(local, high)?;
         }
         local.rates(problem).1.then_some(Located::Point)

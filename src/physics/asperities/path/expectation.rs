@@ -9,7 +9,7 @@ use crate::asperities::contact::transition::{Transition, absorbing_radius};
 /// Transition that is expected, with its mean penetration \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PredictedEvent {
-    pub(crate) approach: f64,
+    pub(crate) mean_penetration: f64,
     pub(crate) transition: Transition,
 }
 
@@ -29,7 +29,7 @@ impl Predictor {
             let ends = start + 1.1 * (end - start);
             if (start >= 0.0 || ends >= 0.0) && !due.iter().any(|event| event.transition == transition) {
                 let share = if start >= 0.0 { 0.0 } else { (start / (start - end)).clamp(0.0, 1.0) };
-                due.push(PredictedEvent { approach: at + sign * share * ((target - at) * sign).max(0.0), transition });
+                due.push(PredictedEvent { mean_penetration: at + sign * share * ((target - at) * sign).max(0.0), transition });
             }
         }
     }
@@ -57,7 +57,7 @@ impl Predictor {
         let left = (target - trace.at) * sign;
         // A curved way may end a little earlier than a straight one.
         if (left > 0.0 && speed > 0.0 || way == 0.0) && way <= 1.1 * left {
-            due.push(PredictedEvent { approach: trace.at + sign * way, transition: Transition::jump_in(i) });
+            due.push(PredictedEvent { mean_penetration: trace.at + sign * way, transition: Transition::jump_in(i) });
         }
     }
 
@@ -67,7 +67,7 @@ impl Predictor {
         let speed = sign * trace.rate;
         let left = (target - trace.at) * sign;
         let mut offer = |way: f64, transition: Transition| {
-            due.push(PredictedEvent { approach: trace.at + sign * way.max(0.0), transition });
+            due.push(PredictedEvent { mean_penetration: trace.at + sign * way.max(0.0), transition });
         };
         if speed < 0.0 {
             let way = (penetration - asperity.jump_off_penetration()) / -speed;

@@ -24,15 +24,15 @@ impl EquilibriumPath {
     pub(super) fn merge(&mut self, transition: Transition, before: &mut Before) -> Result<Transition, PhysicsError> {
         let problem = self.problem();
         let pair = [transition.by.unwrap_or(transition.asperity), transition.asperity];
-        let approach = self.neighbourhood.local.approach;
+        let mean_penetration = self.neighbourhood.local.mean_penetration;
         let at = pair.map(|i| self.neighbourhood.local.find(i));
         let [Some(first), Some(second)] = at else { return Ok(Transition::snap(transition.asperity)) };
         let local = &self.neighbourhood.local;
         let radii = [local.radius[first], local.radius[second]];
         let share = radii.map(|a| a * a / (radii[0] * radii[0] + radii[1] * radii[1]));
         let drift = share[0] * local.members[first].drift + share[1] * local.members[second].drift;
-        let contacts: Vec<(usize, f64)> = self.contacts_without(&pair, approach);
-        let mut merged = problem.merged(pair, radii, approach);
+        let contacts: Vec<(usize, f64)> = self.contacts_without(&pair, mean_penetration);
+        let mut merged = problem.merged(pair, radii, mean_penetration);
         let (number, radius) = (problem.len(), merged.contact_radius_m());
         drop(problem);
         Arc::make_mut(&mut self.solver.problem).add(&merged)?;
@@ -40,7 +40,7 @@ impl EquilibriumPath {
         let displaced = self.displaced(number, &merged, outside);
         let problem = self.problem();
         let difference = problem.difference_field(number, &merged, self.state());
-        let height = problem.asperities[number].penetration(radius) + displaced[2] - approach;
+        let height = problem.asperities[number].penetration(radius) + displaced[2] - mean_penetration;
         merged.height_m = height + problem.differences_at(self.state(), number);
         merged.offset_j = problem.exchange_j(number, &merged, &contacts, &difference, displaced);
         drop(problem);
@@ -66,9 +66,9 @@ impl EquilibriumPath {
 
     /// Replaces a merged contact of the local problem by its parts, with its present area; the local problem is the one `before` any response.
     pub(super) fn split(&mut self, number: usize, before: &mut Before) {
-        let approach = self.neighbourhood.local.approach;
+        let mean_penetration = self.neighbourhood.local.mean_penetration;
         let Some(at) = self.neighbourhood.local.find(number) else { return };
-        let contacts: Vec<(usize, f64)> = self.contacts_without(&[number], approach);
+        let contacts: Vec<(usize, f64)> = self.contacts_without(&[number], mean_penetration);
         let problem = self.problem();
         let merged = self.predictor.state.merged[number - problem.summits()];
         let (radius, drift) = (self.neighbourhood.local.radius[at], self.neighbourhood.local.members[at].drift);
@@ -117,8 +117,8 @@ impl EquilibriumPath {
     }
 
     /// Contacts and their predicted radii at a mean penetration \[m\], without some.
-    fn contacts_without(&self, some: &[usize], approach: f64) -> Vec<(usize, f64)> {
-        let all = self.predictor.radii(&self.problem(), approach);
+    fn contacts_without(&self, some: &[usize], mean_penetration: f64) -> Vec<(usize, f64)> {
+        let all = self.predictor.radii(&self.problem(), mean_penetration);
         all.into_iter().filter(|(i, _)| !some.contains(i)).collect()
     }
 

@@ -65,8 +65,8 @@
 //! - the offset of the potential if a load law changes: `Problem::self_potential`;
 //! - the columns that count events: `schema::avalanches` and `schema::run`.
 
-mod accuracy;
 mod apply;
+mod arrival;
 mod avalanche;
 mod chatter;
 mod checkpoint;

@@ -54,7 +54,13 @@ struct Selection {
 
 impl Neighbourhood {
     /// Gathers the contacts nearest to a transition, at a mean penetration \[m\] or where they were known last.
-    pub(super) fn gather(&mut self, within: &Surroundings<'_>, transition: &Transition, approach: Option<f64>, effort: &mut Effort) {
+    pub(super) fn gather(
+        &mut self,
+        within: &Surroundings<'_>,
+        transition: &Transition,
+        mean_penetration: Option<f64>,
+        effort: &mut Effort,
+    ) {
         let Surroundings { problem, predictor, pending, sense, .. } = within;
         self.centre = *problem.place(transition.by.unwrap_or(transition.asperity));
         let Selection { members, mut watched, shell, reach } = within.select(transition, &self.centre);
@@ -66,15 +72,15 @@ impl Neighbourhood {
             self.shell.retain(|i| *i != transition.asperity);
         }
         let traces = &predictor.traces;
-        let approach = approach.unwrap_or_else(|| {
+        let mean_penetration = mean_penetration.unwrap_or_else(|| {
             let asperity = transition.kind.begins_contact().then_some(transition.asperity);
             let known = members.iter().copied().chain(asperity).map(|i| traces[i].at);
-            known.max_by(|u, v| (u * sense).total_cmp(&(v * sense))).unwrap_or(predictor.state.approach_m)
+            known.max_by(|u, v| (u * sense).total_cmp(&(v * sense))).unwrap_or(predictor.state.mean_penetration_m)
         });
-        let members: Vec<_> = members.into_iter().map(|i| (i, traces[i], predictor.radius(problem, i, approach))).collect();
+        let members: Vec<_> = members.into_iter().map(|i| (i, traces[i], predictor.radius(problem, i, mean_penetration))).collect();
         let watched: Vec<_> = watched.into_iter().map(|i| (i, traces[i])).collect();
         let extent = Extent::of(members.len(), predictor.state.contacts.len());
-        self.local.gather(problem, &members, &watched, approach, extent, effort);
+        self.local.gather(problem, &members, &watched, mean_penetration, extent, effort);
         self.to_apply.clear();
         self.to_apply.extend(self.local.members.iter().map(|member| pending.of(member.asperity)));
     }
@@ -82,7 +88,7 @@ impl Neighbourhood {
     /// Stores the known radii and the mean penetration of the members, before an event is located.
     pub(super) fn set_origin(&mut self) {
         self.origin.clone_from(&self.local.radius);
-        self.reference = self.local.approach;
+        self.reference = self.local.mean_penetration;
     }
 }
 

@@ -43,11 +43,11 @@ struct Sums {
 
 impl Sums {
     /// Extrapolates to a mean penetration \[m\].
-    fn go_to(&mut self, approach: f64) {
-        let way = approach - self.at;
+    fn go_to(&mut self, mean_penetration: f64) {
+        let way = mean_penetration - self.at;
         self.load += self.load_rate * way;
         self.area += self.area_rate * way;
-        self.at = approach;
+        self.at = mean_penetration;
     }
 
     /// Adds (1) or subtracts (−1) other sums at the same mean penetration.
@@ -61,7 +61,7 @@ impl Sums {
 
 impl Predictor {
     pub(crate) fn new(problem: &Problem, state: State) -> Self {
-        let unknown = PenetrationTrace::unknown(state.approach_m);
+        let unknown = PenetrationTrace::unknown(state.mean_penetration_m);
         let mut covered_by: Vec<(usize, usize)> = state
             .status
             .iter()
@@ -125,28 +125,28 @@ impl Predictor {
 
     /// Predicted contact radius at a mean penetration \[m\]. At the predictor's own it may lie beyond the end of the branch, where the
     /// penetration has another radius.
-    pub(crate) fn radius(&self, problem: &Problem, i: usize, approach: f64) -> f64 {
+    pub(crate) fn radius(&self, problem: &Problem, i: usize, mean_penetration: f64) -> f64 {
         let trace = self.traces[i];
-        if trace.at == approach { self.state.radius[i] } else { trace.radius_ahead(&problem.asperities[i], approach) }
+        if trace.at == mean_penetration { self.state.radius[i] } else { trace.radius_ahead(&problem.asperities[i], mean_penetration) }
     }
 
     /// Predicted contact radii at a mean penetration \[m\].
-    pub(crate) fn radii(&self, problem: &Problem, approach: f64) -> Vec<(usize, f64)> {
+    pub(crate) fn radii(&self, problem: &Problem, mean_penetration: f64) -> Vec<(usize, f64)> {
         let mut radii = Vec::with_capacity(self.state.contacts.len());
         for contacts in self.state.contacts.chunks(LANES) {
             // Lanes beyond the last contact repeat it.
             let lanes: [usize; LANES] = std::array::from_fn(|lane| contacts[lane.min(contacts.len() - 1)]);
-            let ahead = Asperity::radii_ahead(lanes.map(|i| &problem.asperities[i]), lanes.map(|i| self.traces[i].ahead(approach)));
-            let known = |i: usize| (self.traces[i].at == approach).then_some(self.state.radius[i]);
+            let ahead = Asperity::radii_ahead(lanes.map(|i| &problem.asperities[i]), lanes.map(|i| self.traces[i].ahead(mean_penetration)));
+            let known = |i: usize| (self.traces[i].at == mean_penetration).then_some(self.state.radius[i]);
             radii.extend(contacts.iter().zip(ahead).map(|(&i, ahead)| (i, known(i).unwrap_or(ahead))));
         }
         radii
     }
 
     /// Moves all contacts to their predicted states at a mean penetration \[m\].
-    pub(crate) fn go_to(&mut self, problem: &Problem, approach: f64) {
-        self.state.approach_m = approach;
-        for (i, a) in self.radii(problem, approach) {
+    pub(crate) fn go_to(&mut self, problem: &Problem, mean_penetration: f64) {
+        self.state.mean_penetration_m = mean_penetration;
+        for (i, a) in self.radii(problem, mean_penetration) {
             if self.traces[i].is_known() {
                 self.state.radius[i] = a;
             }
@@ -162,17 +162,17 @@ impl Predictor {
     }
 
     /// Predicted load and area at a mean penetration.
-    pub(crate) fn totals(&self, approach: f64) -> Totals {
+    pub(crate) fn totals(&self, mean_penetration: f64) -> Totals {
         let mut sums = self.sums;
-        sums.go_to(approach);
+        sums.go_to(mean_penetration);
         Totals { load_n: sums.load, area_m2: sums.area }
     }
 
     /// Removes a contact from the sums (−1) or adds it (+1), as predicted at a mean penetration.
-    pub(crate) fn count(&mut self, problem: &Problem, i: usize, sign: f64, approach: f64) {
+    pub(crate) fn count(&mut self, problem: &Problem, i: usize, sign: f64, mean_penetration: f64) {
         let mut share = self.share(problem, i);
-        share.go_to(approach);
-        self.sums.go_to(approach);
+        share.go_to(mean_penetration);
+        self.sums.go_to(mean_penetration);
         self.sums.add(&share, sign);
     }
 
@@ -195,12 +195,12 @@ impl Predictor {
 
     /// Sets load and area before any predictor is known.
     pub(crate) fn expect_totals(&mut self, totals: Totals) {
-        self.sums = Sums { at: self.state.approach_m, load: totals.load_n, area: totals.area_m2, ..Sums::default() };
+        self.sums = Sums { at: self.state.mean_penetration_m, load: totals.load_n, area: totals.area_m2, ..Sums::default() };
     }
 
     /// Recomputes the sums when all predictors are at one mean penetration.
     pub(crate) fn recount(&mut self, problem: &Problem) {
-        let mut sums = Sums { at: self.state.approach_m, ..Sums::default() };
+        let mut sums = Sums { at: self.state.mean_penetration_m, ..Sums::default() };
         for &i in &self.state.contacts {
             sums.add(&self.share(problem, i), 1.0);
         }
@@ -215,7 +215,7 @@ impl Predictor {
 
     /// Adds a merged contact; it gets the next number.
     pub(crate) fn extend(&mut self, merged: Merged) {
-        self.traces.push(PenetrationTrace::unknown(self.state.approach_m));
+        self.traces.push(PenetrationTrace::unknown(self.state.mean_penetration_m));
         self.state.extend(merged);
     }
 

@@ -87,7 +87,7 @@ impl EquilibriumPath {
                 displacement: *displacement,
             })
             .collect();
-        let solved = near.local.solve(problem, Hold::Approach, &mut self.solver.effort).is_ok() && near.local.rates(problem).1;
+        let solved = near.local.solve(problem, Hold::MeanPenetration, &mut self.solver.effort).is_ok() && near.local.rates(problem).1;
         (before, start, solved)
     }
 
@@ -111,7 +111,7 @@ impl EquilibriumPath {
             energy -= member.displacement * member.load;
             expected += self.predictor.load_rate(&self.problem(), member.asperity) * member.displacement;
         }
-        self.expect_load(self.neighbourhood.local.approach, expected);
+        self.expect_load(self.neighbourhood.local.mean_penetration, expected);
         energy
     }
 
@@ -119,8 +119,8 @@ impl EquilibriumPath {
     pub(super) fn begin(&mut self) -> Before {
         let problem = &*self.problem();
         let local = &self.neighbourhood.local;
-        let totals = self.predictor.totals(local.approach);
-        self.log.pass(local.approach, totals.load_n);
+        let totals = self.predictor.totals(local.mean_penetration);
+        self.log.pass(local.mean_penetration, totals.load_n);
         let (load, potential) = local.totals(problem);
         Before { totals, potential, load, members: local.reference_states(), reciprocal_load: local.reciprocal_load_rate(problem) }
     }
@@ -129,7 +129,7 @@ impl EquilibriumPath {
     pub(super) fn finish(&mut self, before: &Before, applied: Vec<Transition>, energy: f64, avalanche: &mut Avalanche) {
         let problem = &*self.problem();
         let near = &self.neighbourhood;
-        let approach = near.local.approach;
+        let mean_penetration = near.local.mean_penetration;
         let changes = near.local.displacement_changes(problem, &near.shell, &near.centre, &before.members);
         let load = near.local.totals(problem).0 - before.load;
         let response = before.reciprocal_load - near.local.reciprocal_load_rate(problem);
@@ -139,15 +139,15 @@ impl EquilibriumPath {
         let local = &self.neighbourhood.local;
         let trace = |((member, a), rate): ((&OutsideField, &f64), &f64)| {
             let i = member.asperity;
-            (i, *a, PenetrationTrace::of(&problem.asperities[i], approach, *a, *rate))
+            (i, *a, PenetrationTrace::of(&problem.asperities[i], mean_penetration, *a, *rate))
         };
         let traces: Vec<_> = local.members.iter().zip(&local.radius).zip(&rates).map(trace).collect();
         avalanche.open.extend(traces.iter().map(|trace| trace.0));
         self.predictor.replace_all(problem, &traces);
         self.finish_free(&rates, avalanche);
-        let after = self.predictor.totals(approach);
-        self.log.restart(approach, after.load_n);
-        self.record(&applied, approach, before.totals, after, energy - gained_j);
+        let after = self.predictor.totals(mean_penetration);
+        self.log.restart(mean_penetration, after.load_n);
+        self.record(&applied, mean_penetration, before.totals, after, energy - gained_j);
         avalanche.moved.extend(applied);
     }
 
@@ -204,8 +204,8 @@ impl EquilibriumPath {
     /// Enters a status into the predictor.
     fn enter_status(&mut self, i: usize, now: Status) {
         if self.predictor.state.status[i] == Status::Contact && now != Status::Contact && self.predictor.traces[i].is_known() {
-            let approach = self.neighbourhood.local.approach;
-            self.predictor.count(&self.solver.problem, i, -1.0, approach);
+            let mean_penetration = self.neighbourhood.local.mean_penetration;
+            self.predictor.count(&self.solver.problem, i, -1.0, mean_penetration);
         }
         self.pending.set_applied(i);
         self.predictor.traces[i].forget();
@@ -240,7 +240,7 @@ impl EquilibriumPath {
             }
             self.predictor.candidates = candidates;
         }
-        self.expect_load(self.neighbourhood.local.approach, response);
+        self.expect_load(self.neighbourhood.local.mean_penetration, response);
     }
 
     /// Propagates the difference between the solution curve of a local problem and its linear prediction, which the rest of the contact
@@ -251,7 +251,7 @@ impl EquilibriumPath {
             return;
         }
         let problem = &*self.problem();
-        let way = near.local.approach - near.reference;
+        let way = near.local.mean_penetration - near.reference;
         let reference = |(member, a): (&OutsideField, &f64)| {
             let i = member.asperity;
             ReferenceState { asperity: i, radius: *a, more: self.predictor.radius_rate(problem, i) * way }
@@ -268,8 +268,8 @@ impl EquilibriumPath {
 
     /// Counts the work of the load that contacts will have when pending displacements are applied; from here on it is larger by `more`
     /// \[N\].
-    pub(super) fn expect_load(&mut self, approach: f64, more: f64) {
-        self.log.work_j += self.energy.expect_load(approach, more);
+    pub(super) fn expect_load(&mut self, mean_penetration: f64, more: f64) {
+        self.log.work_j += self.energy.expect_load(mean_penetration, more);
         self.predictor.add_load(more);
     }
 
@@ -283,8 +283,8 @@ impl EquilibriumPath {
             let i = member.asperity;
             let (asperity, from) = (&problem.asperities[i], self.predictor.traces[i]);
             let trace = match rates {
-                Some(rates) => PenetrationTrace::of(asperity, local.approach, *a, rates[k]),
-                None => PenetrationTrace::new(local.approach, asperity.penetration(*a), from.rate),
+                Some(rates) => PenetrationTrace::of(asperity, local.mean_penetration, *a, rates[k]),
+                None => PenetrationTrace::new(local.mean_penetration, asperity.penetration(*a), from.rate),
             };
             let along_curve = from.at == self.neighbourhood.reference && curve.len() > 1;
             self.log.work_j += if along_curve { work_along(problem, i, k, curve) } else { work(problem, i, from, trace) };
@@ -294,7 +294,7 @@ impl EquilibriumPath {
     }
 
     /// Records the transitions of one relaxation; its energy is that of the first.
-    pub(super) fn record(&mut self, applied: &[Transition], approach: f64, before: Totals, after: Totals, energy: f64) {
+    pub(super) fn record(&mut self, applied: &[Transition], mean_penetration: f64, before: Totals, after: Totals, energy: f64) {
         let mut moved = Vec::with_capacity(applied.len());
         for transition in applied {
             if !matches!(transition.kind, EventKind::JumpOff | EventKind::Merge) {
@@ -302,6 +302,6 @@ impl EquilibriumPath {
             }
             moved.push((*transition, transition.status_after(self.state())));
         }
-        self.log.record(&moved, approach, [before, after], energy);
+        self.log.record(&moved, mean_penetration, [before, after], energy);
     }
 }

@@ -1,6 +1,6 @@
 //! Checkpoints of a path, taken and resumed.
 
-use super::accuracy::Arrival;
+use super::arrival::Arrival;
 use super::checkpoint::{Checkpoint, PathCheckpoint};
 use super::energy::EnergyLedger;
 use super::equilibrium_path::{EquilibriumPath, Frame};
@@ -16,7 +16,7 @@ impl EquilibriumPath {
     /// Resumes a path. The state need not be an equilibrium: the difference of the potential is charged to the last event, and the initial
     /// residual is not recorded as predictor residual.
     pub(crate) fn resume(problem: Arc<Problem>, from: PathCheckpoint) -> Result<Self, PhysicsError> {
-        let (approach, drift) = (from.state.approach_m, from.log.drift_m);
+        let (mean_penetration, drift) = (from.state.mean_penetration_m, from.log.drift_m);
         let (longest, scale) = from.lengths;
         let parted = from.parted.unwrap_or_else(|| problem.touching(&from.state));
         let mut predictor = Predictor::new(&problem, from.state);
@@ -25,13 +25,13 @@ impl EquilibriumPath {
         let steps = StepControl::new(problem.numerics.steps, from.sense, longest, from.halvings);
         let mut path = Self::new(problem, predictor, Frame { sense: from.sense, scale }, steps);
         path.solver.effort = from.effort;
-        path.energy = EnergyLedger::new(approach, from.events, from.balance);
+        path.energy = EnergyLedger::new(mean_penetration, from.events, from.balance);
         if from.events < from.log.events.len() {
             path.energy.charge_last_event();
         }
         (path.log, path.totals, path.chatter) = (from.log, from.totals, from.chatter);
         path.chatter.grow(path.problem().len());
-        match path.correct(approach, Arrival::Jump, Precision::Exact) {
+        match path.correct(mean_penetration, Arrival::Jump, Precision::Exact) {
             Ok(()) => {
                 path.log.drift_m = drift;
                 Ok(path)
@@ -85,7 +85,7 @@ impl EquilibriumPath {
         self.postponed.clone_from(&checkpoint.postponed);
         self.totals = checkpoint.totals;
         self.log.restore(&checkpoint.log, checkpoint.events, checkpoint.segments);
-        self.energy = EnergyLedger::new(self.state().approach_m, self.log.events.len(), checkpoint.balance);
+        self.energy = EnergyLedger::new(self.state().mean_penetration_m, self.log.events.len(), checkpoint.balance);
         self.pending.clear();
     }
 }

@@ -87,9 +87,9 @@ impl StepControl {
     }
 
     /// Counts a trial, of `most`; `asperity` is the caller's number of the one that is to change.
-    pub(super) fn count_trial(&mut self, most: usize, approach_m: f64, asperity: usize) -> Result<(), PhysicsError> {
+    pub(super) fn count_trial(&mut self, most: usize, mean_penetration_m: f64, asperity: usize) -> Result<(), PhysicsError> {
         self.trials += 1;
-        if self.trials <= most { Ok(()) } else { Err(LoopError::EndlessAvalanche { approach_m, events: most, asperity }.into()) }
+        if self.trials <= most { Ok(()) } else { Err(LoopError::EndlessAvalanche { mean_penetration_m, events: most, asperity }.into()) }
     }
 }
 

@@ -29,7 +29,7 @@ pub(super) fn work_along(problem: &Problem, i: usize, member: usize, curve: &[Cu
         gauss(|p| {
             let [start, end] = [from, to].map(|state| (state.radius[member], state.direction[member] * span));
             let a = hermite(p, start.0, end.0, start.1, end.1);
-            asperity.load(a) * hermite_slope(p, from.approach, to.approach, from.slope * span, to.slope * span)
+            asperity.load(a) * hermite_slope(p, from.mean_penetration, to.mean_penetration, from.slope * span, to.slope * span)
         })
     };
     curve.windows(2).map(part).sum()
@@ -47,7 +47,7 @@ pub(super) fn mean_square(curve: &[CurveState], way: f64) -> f64 {
         let span = pair[1].at - pair[0].at;
         gauss(|p| {
             let s = (pair[0].at + p * span - first.at) / whole;
-            s * s * hermite_slope(p, pair[0].approach, pair[1].approach, pair[0].slope * span, pair[1].slope * span)
+            s * s * hermite_slope(p, pair[0].mean_penetration, pair[1].mean_penetration, pair[0].slope * span, pair[1].slope * span)
         })
     };
     curve.windows(2).map(part).sum()

@@ -100,7 +100,7 @@ impl NonlinearSystem for Descent<'_> {
         let mut local = self.around(worst.contact.asperity);
         let problem = &*Arc::clone(&self.solver.problem);
         let (start, effort) = (local.radius.clone(), &mut self.solver.effort);
-        let solved = local.solve_with(problem, Hold::Approach, Damping::PATIENT, effort).is_ok() && local.rates(problem).1;
+        let solved = local.solve_with(problem, Hold::MeanPenetration, Damping::PATIENT, effort).is_ok() && local.rates(problem).1;
         if !solved {
             match self.failing {
                 Failing::EndsAtOnce => return Some(Err(worst.contact)),
@@ -126,15 +126,16 @@ impl Descent<'_> {
     /// The contacts nearest to one, with the radii from which the step began and the present displacement by the others.
     fn around(&mut self, centre: usize) -> LocalProblem {
         let problem = &*Arc::clone(&self.solver.problem);
-        let (state, approach) = (&*self.state, self.state.approach_m);
+        let (state, mean_penetration) = (&*self.state, self.state.mean_penetration_m);
         let (all, count) = (state.contacts.len(), problem.numerics.events.local_contacts);
         let near = problem.neighbours.nearest(problem.place(centre), count, all, |i| state.status[i] == Status::Contact);
         let mut members: Vec<usize> = near.iter().map(|(_, i)| *i).collect();
         members.sort_unstable();
-        let resting = |&i: &usize| (i, PenetrationTrace::of(&problem.asperities[i], approach, state.radius[i], 0.0), state.radius[i]);
+        let resting =
+            |&i: &usize| (i, PenetrationTrace::of(&problem.asperities[i], mean_penetration, state.radius[i], 0.0), state.radius[i]);
         let contacts: Vec<_> = members.iter().map(resting).collect();
         let mut local = LocalProblem::default();
-        local.gather(problem, &contacts, &[], approach, Extent::of(members.len(), all), &mut self.solver.effort);
+        local.gather(problem, &contacts, &[], mean_penetration, Extent::of(members.len(), all), &mut self.solver.effort);
         for (k, i) in members.iter().enumerate() {
             let Ok(at) = state.contacts.binary_search(i) else { continue };
             local.members[k].outside -= self.solver.residual[at];

@@ -80,24 +80,15 @@ impl GlobalSolver {
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.precision.of_sums());
         field.linearise(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
-        self.compare(state)
-    }
-
-    /// Residuals of a state with known displacements.
-    fn compare(&mut self, state: &mut State) -> NotConverged {
-        let problem = &*Arc::clone(&self.problem);
         self.residual.clear();
         self.diagonal.clear();
         let mut worst = NotConverged::residual(0.0, state.contacts.first().copied().unwrap_or(0));
         for (&i, w) in state.contacts.iter().zip(&state.displacement) {
             let (asperity, a) = (&problem.asperities[i], state.radius[i]);
-            let residual = state.approach_m + problem.heights[i] - w - asperity.penetration(a);
+            let residual = state.mean_penetration_m + problem.heights[i] - w - asperity.penetration(a);
             self.residual.push(residual);
             self.diagonal.push(asperity.penetration_slope(a));
-            // A residual that is not a number must not pass as a small one.
-            if residual.is_nan() || residual.abs() > worst.residual_m {
-                worst = NotConverged::residual(residual.abs(), i);
-            }
+            worst = worst.or_residual(residual, i);
         }
         state.residual_m = worst.residual_m;
         worst
@@ -148,12 +139,11 @@ impl GlobalSolver {
     }
 
     /// True if all free asperities are to be evaluated at a mean penetration \[m\]: the first in each interval of the numerics.
-    pub(crate) fn begins_block(&mut self, approach: f64) -> bool {
-        let block = |approach: f64| (approach / (self.problem.numerics.solver.free_interval * self.problem.rms_height_m)).floor();
-        let begins = self.swept_at.is_none_or(|at| block(approach) != block(at));
-        if begins {
-            self.swept_at = Some(approach);
-        }
+    pub(crate) fn begins_block(&mut self, mean_penetration: f64) -> bool {
+        let interval = self.problem.numerics.solver.free_interval * self.problem.rms_height_m;
+        let block = |at: f64| (at / interval).floor();
+        let begins = self.swept_at.is_none_or(|at| block(mean_penetration) != block(at));
+        self.swept_at = if begins { Some(mean_penetration) } else { self.swept_at };
         begins
     }
 
@@ -164,8 +154,8 @@ impl GlobalSolver {
         let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
         let found = [&mut displacement, &mut slopes];
         let field = problem.field.for_targets(&self.spots, wanted, self.precision.of_sums());
-        field.approach(&self.spots, rates, wanted, found, &mut self.tangents.free, &mut self.effort);
-        let at = state.approach_m;
+        field.along_path(&self.spots, rates, wanted, found, &mut self.tangents.free, &mut self.effort);
+        let at = state.mean_penetration_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
         pairs.map(|((w, slope), &i)| PenetrationTrace::new(at, at + problem.heights[i] - w, 1.0 - slope)).collect()
     }

@@ -1,4 +1,4 @@
-//! Equilibria of a contact at one approach: global, local, and by relaxation.
+//! Equilibria of a contact at one mean penetration: global, local, and by relaxation.
 
 pub(crate) mod descent;
 pub(crate) mod global;

@@ -16,7 +16,7 @@ impl Precision {
     pub(crate) fn of_sums(self) -> SumPrecision {
         match self {
             Self::Exact => SumPrecision::Full,
-            Self::Sufficient => SumPrecision::Rough,
+            Self::Sufficient => SumPrecision::Intermediate,
         }
     }
 }

@@ -17,7 +17,7 @@ pub(crate) struct PenetrationTrace {
 const MAX_RATE: f64 = 4.0;
 
 /// Lower bound of |dδ/da|, against division by zero at the end of the branch.
-const LEAST_SLOPE: f64 = 1e-6;
+const MIN_SLOPE: f64 = 1e-6;
 
 impl PenetrationTrace {
     /// Penetration \[m\] at a mean penetration \[m\], with its rate.
@@ -39,7 +39,7 @@ impl PenetrationTrace {
     /// the opposite sign.
     pub(crate) fn speed(&self, asperity: &Asperity, a: f64) -> f64 {
         let slope = asperity.penetration_slope(a);
-        self.rate / if slope.abs() < LEAST_SLOPE { LEAST_SLOPE.copysign(slope) } else { slope }
+        self.rate / if slope.abs() < MIN_SLOPE { MIN_SLOPE.copysign(slope) } else { slope }
     }
 
     /// [`Self::speed`] with a bounded rate.
@@ -83,17 +83,17 @@ impl PenetrationTrace {
     }
 
     /// The trace moved to another mean penetration \[m\], with its rate.
-    pub(crate) fn moved_to(&self, approach: f64) -> Self {
-        Self { at: approach, value: self.ahead(approach), ..*self }
+    pub(crate) fn moved_to(&self, mean_penetration: f64) -> Self {
+        Self { at: mean_penetration, value: self.ahead(mean_penetration), ..*self }
     }
 
     /// Predicted penetration at a mean penetration \[m\]: not a number if it is unknown.
-    pub(crate) fn ahead(&self, approach: f64) -> f64 {
-        self.value + self.rate.clamp(-MAX_RATE, MAX_RATE) * (approach - self.at)
+    pub(crate) fn ahead(&self, mean_penetration: f64) -> f64 {
+        self.value + self.rate.clamp(-MAX_RATE, MAX_RATE) * (mean_penetration - self.at)
     }
 
     /// Predicted contact radius \[m\].
-    pub(crate) fn radius_ahead(&self, asperity: &Asperity, approach: f64) -> f64 {
-        asperity.radius_ahead(self.ahead(approach))
+    pub(crate) fn radius_ahead(&self, asperity: &Asperity, mean_penetration: f64) -> f64 {
+        asperity.radius_ahead(self.ahead(mean_penetration))
     }
 }

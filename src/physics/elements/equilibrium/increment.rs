@@ -43,7 +43,7 @@ impl SinglePrecisionIncrement {
     pub(crate) fn rebase(&mut self, problem: &Problem, state: &State, centre: f64) {
         self.centre = centre;
         self.stale.fill(true);
-        let approach = state.approach;
+        let mean_penetration = state.mean_penetration;
         let fields = (
             self.gap.par_chunks_mut(PANEL),
             self.residual.par_chunks_mut(PANEL),
@@ -56,7 +56,7 @@ impl SinglePrecisionIncrement {
         );
         fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(gap, residual, moved, pressed, u, p, z, bonds)| {
             for (k, (gap, residual)) in gap.iter_mut().zip(residual).enumerate() {
-                let exact = u[k] - approach - z[k];
+                let exact = u[k] - mean_penetration - z[k];
                 *gap = exact as f32;
                 *residual = (p[k] + problem.bond(bonds[k], exact).tension - centre) as f32;
             }

@@ -1,4 +1,4 @@
-//! Equilibrium at a fixed approach: a local minimum of the energy, reached without passing over a barrier.
+//! Equilibrium at a fixed mean penetration: a local minimum of the energy, reached without passing over a barrier.
 //!
 //! L-BFGS with two pairs and a *split* preconditioner, `M⁻¹ = P_O S K⁻¹ S P_O + P_C (V'' + 0.7)⁻¹ P_C` with `M` in E*/dx. Points in contact `C`, of
 //! `V'' > 0.3 E*/dx`, are nearly fixed by the wall. On the open points `O` the inverse of the elastic operator is the opposite-order (Calderón)
@@ -79,7 +79,7 @@ pub struct Minimiser {
 /// State during a minimisation.
 pub(crate) struct WorkingState<'a> {
     pub(crate) problem: &'a Problem,
-    /// Present bonds; approach, displacement and pressure at the last rebase.
+    /// Present bonds; mean penetration, displacement and pressure at the last rebase.
     pub(crate) state: &'a mut State,
     /// Displacement and pressure since then.
     pub(crate) displacement_change: &'a [f32],
@@ -172,7 +172,7 @@ impl Minimiser {
         self.double.transforms + self.single.transforms
     }
 
-    /// Moves `state` to the local minimum of the energy at its approach; bonds around contacts grow on the way.
+    /// Moves `state` to the local minimum of the energy at its mean penetration; bonds around contacts grow on the way.
     pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Outcome {
         self.minimise_with(problem, state, accuracy, &ANY, None)
     }

@@ -33,7 +33,8 @@ impl Equilibrium {
         Ok(Self { minimiser: Minimiser::new(problem)?, patches, points: problem.half_space.transformed() })
     }
 
-    /// Moves `state` to the local minimum of the energy at its approach; bonds around contacts grow on the way. The iterations are those on the whole grid.
+    /// Moves `state` to the local minimum of the energy at its mean penetration; bonds around contacts grow on the way. The iterations are those on the whole
+    /// grid.
     ///
     /// # Errors
     /// Not enough memory.
@@ -58,7 +59,7 @@ impl Equilibrium {
         Ok(Outcome { iterations: first.iterations + second.iterations, ..second })
     }
 
-    /// Rate at which an equilibrium follows the approach.
+    /// Rate at which an equilibrium follows the mean penetration.
     ///
     /// # Errors
     /// Not enough memory.

@@ -38,7 +38,7 @@ struct Limits {
     residual: f64,
 }
 
-/// Change of an equilibrium with the approach.
+/// Change of an equilibrium with the mean penetration.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Rate {
     /// `du/dΔ` at each point.
@@ -76,7 +76,7 @@ impl Minimiser {
         }
     }
 
-    /// Rate at which the displacement follows the approach at an equilibrium, and the stiffness `dF/dΔ` of the contact: `(K + V'')·rate = V''` for
+    /// Rate at which the displacement follows the mean penetration at an equilibrium, and the stiffness `dF/dΔ` of the contact: `(K + V'')·rate = V''` for
     /// displacements of zero mean, by conjugate gradients. The stiffness `Σ V''·(1 − rate)` has an error of second order in that of the rate.
     ///
     /// # Errors

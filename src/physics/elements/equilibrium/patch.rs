@@ -189,7 +189,7 @@ impl Patch {
             attraction: whole.attraction,
             numerics: whole.numerics,
         };
-        let state = State { approach: 0.0, displacement: field()?, pressure: field()?, bonds: filled(side * side, Bonding::Free)? };
+        let state = State { mean_penetration: 0.0, displacement: field()?, pressure: field()?, bonds: filled(side * side, Bonding::Free)? };
         Ok(Self { minimiser: Minimiser::new(&problem)?, problem, state, start: field()? })
     }
 
@@ -213,7 +213,7 @@ impl Patch {
             self.state.pressure[k] = on.state.pressure[from] + f64::from(on.pressure_change[from]);
             self.state.bonds[k] = on.state.bonds[from];
         }
-        self.state.approach = on.state.approach;
+        self.state.mean_penetration = on.state.mean_penetration;
     }
 
     /// Takes over what has happened on a smaller patch with the same middle.

@@ -4,11 +4,11 @@
 /// (`F² ∝ Δ`) the cubic is worse than the trapezoid from here on.
 pub(crate) const DISCONTINUITY: f64 = 1.0 / 3.0;
 
-/// A point of a loop: approach `Δ`, load `F` and stiffness `dF/dΔ`.
+/// A point of a loop: mean penetration `Δ`, load `F` and stiffness `dF/dΔ`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnLoop {
-    /// Approach Δ.
-    pub approach: f64,
+    /// Mean penetration Δ.
+    pub mean_penetration: f64,
     /// Load.
     pub load: f64,
     /// Slope of the load.
@@ -33,7 +33,7 @@ const SEARCHED_PARTS: usize = 32;
 /// Minimum load between two points, by the cubic through loads and slopes at both.
 #[must_use]
 pub fn least_between(start: OnLoop, end: OnLoop) -> f64 {
-    let length = end.approach - start.approach;
+    let length = end.mean_penetration - start.mean_penetration;
     let (s0, s1) = (start.stiffness * length, end.stiffness * length);
     let rise = end.load - start.load;
     let load = |part: usize| {
@@ -50,7 +50,7 @@ pub fn least_between(start: OnLoop, end: OnLoop) -> f64 {
 /// nothing about the load in between.
 #[must_use]
 pub fn work_between(start: OnLoop, end: OnLoop) -> Work {
-    let length = end.approach - start.approach;
+    let length = end.mean_penetration - start.mean_penetration;
     let bend = start.stiffness - end.stiffness;
     let jump = end.load - start.load - 0.5 * (start.stiffness + end.stiffness) * length;
     let jumps = jump.abs() > DISCONTINUITY * (bend * length).abs();

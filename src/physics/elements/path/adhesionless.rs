@@ -9,8 +9,8 @@ use crate::elements::problem::{Problem, Totals};
 /// An equilibrium without adhesion, of [`Attraction::None`](crate::elements::problem::Attraction::None).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeStep {
-    /// Approach Δ \[dx\].
-    pub approach: f64,
+    /// Mean penetration Δ \[dx\].
+    pub mean_penetration: f64,
     /// Load, energy and area.
     pub totals: Totals,
     /// Real transforms.
@@ -19,7 +19,7 @@ pub struct FreeStep {
     pub converged: bool,
 }
 
-/// Loads a problem without attraction in steps of the approach \[dx\] until `enough` is true for the steps so far, or all points are in contact.
+/// Loads a problem without attraction in steps of the mean penetration \[dx\] until `enough` is true for the steps so far, or all points are in contact.
 ///
 /// # Errors
 /// Not enough memory.
@@ -38,11 +38,11 @@ pub fn load_freely(
         let outcome = equilibrium.find(problem, &mut state, accuracy)?;
         let totals = problem.totals(&state);
         let transforms = equilibrium.transforms(transformed);
-        steps.push(FreeStep { approach: state.approach, totals, transforms, converged: outcome.converged });
+        steps.push(FreeStep { mean_penetration: state.mean_penetration, totals, transforms, converged: outcome.converged });
         if totals.contact == problem.half_space.points() || enough(&steps) {
             return Ok(steps);
         }
-        state.approach += step;
+        state.mean_penetration += step;
         for (now, before) in state.displacement.iter_mut().zip(&mut before) {
             let next = 2.0 * *now - *before;
             *before = std::mem::replace(now, next);

@@ -81,7 +81,7 @@ impl CycleRun<'_> {
     /// Loads by one step; true at the largest of the loads.
     fn load(&mut self, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
         if self.at.cycle.steps.is_empty() {
-            let first = self.attempt(self.at.state.approach, self.settings.accuracy)?;
+            let first = self.attempt(self.at.state.mean_penetration, self.settings.accuracy)?;
             self.accept(first);
             progress(self.position(0.0));
             return Ok(false);
@@ -90,16 +90,16 @@ impl CycleRun<'_> {
         let Some(wanted) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() else { return Ok(true) };
         self.return_to_path();
         let is_reached = self.advance_step(1.0, Some(wanted))?;
-        let (reached, approach_m) = (self.at.last.totals.load, self.at.last.approach);
+        let (reached, mean_penetration_m) = (self.at.last.totals.load, self.at.last.mean_penetration);
         if is_reached {
             if self.is_closed() {
-                return Err(LoopError::Closed { approach_m }.into());
+                return Err(LoopError::Closed { mean_penetration_m }.into());
             }
             self.turn();
         } else {
             self.keep_between();
-            if approach_m > self.farthest() {
-                return Err(LoopError::LoadNotReached { wanted, reached, approach_m }.into());
+            if mean_penetration_m > self.farthest() {
+                return Err(LoopError::LoadNotReached { wanted, reached, mean_penetration_m }.into());
             }
         }
         // Adhesion pulls first: the load falls before it rises.
@@ -114,8 +114,8 @@ impl CycleRun<'_> {
         LoopPosition { done, steps: self.at.cycle.steps.len(), unloading: self.at.last.reversal.is_some(), load }
     }
 
-    /// Magnitude of the approach beyond which the search for a load or for the last separation ends \[dx\]: attraction of a range begins and ends at the
-    /// end of its law.
+    /// Magnitude of the mean penetration beyond which the search for a load or for the last separation ends \[dx\]: attraction of a range begins and ends at
+    /// the end of its law.
     fn farthest(&self) -> f64 {
         let acts = if self.problem.attraction == Attraction::Range { self.problem.law.end_gap() } else { 0.0 };
         self.problem.numerics.steps.farthest * self.problem.range() + 2.0 * acts
@@ -167,8 +167,8 @@ impl CycleRun<'_> {
             }
             return Ok(true);
         }
-        if self.at.state.approach < -self.farthest() {
-            return Err(LoopError::Inseparable { approach_m: self.at.state.approach }.into());
+        if self.at.state.mean_penetration < -self.farthest() {
+            return Err(LoopError::Inseparable { mean_penetration_m: self.at.state.mean_penetration }.into());
         }
         self.advance_step(-1.0, None)?;
         self.keep_max_tension();
@@ -244,7 +244,8 @@ impl CycleRun<'_> {
     fn is_apart(&self) -> bool {
         let range = self.problem.attraction == Attraction::Range;
         // Bonds end beyond the end of the law, where the load vanishes.
-        let ended = if range { self.at.state.approach <= -self.problem.law.end_gap() } else { self.problem.is_free(&self.at.state) };
+        let ended =
+            if range { self.at.state.mean_penetration <= -self.problem.law.end_gap() } else { self.problem.is_free(&self.at.state) };
         self.at.last.totals.contact == 0 && ended
     }
 }

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct Step {
     /// Load reversal from which the step unloads; none while loading.
     pub reversal: Option<usize>,
-    /// Approach Δ \[dx\].
-    pub approach: f64,
+    /// Mean penetration Δ \[dx\].
+    pub mean_penetration: f64,
     /// Load, energy and area.
     pub totals: Totals,
     /// Stiffness `dF/dΔ` at constant bonds \[E* dx\].
@@ -43,7 +43,7 @@ pub struct Step {
 /// A sudden change of the contact.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// Number of the step at whose approach the event is over.
+    /// Number of the step at whose mean penetration the event is over.
     pub step: usize,
     /// Change of the region whose area has changed most.
     pub kind: RegionChange,

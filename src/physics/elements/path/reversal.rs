@@ -1,4 +1,4 @@
-//! Search for the approach of a load at which a path reverses.
+//! Search for the mean penetration of a load at which a path reverses.
 
 use super::records::Step;
 use super::step::{Attempt, CycleRun};
@@ -18,16 +18,16 @@ impl CycleRun<'_> {
         let Accuracy { rms, largest, iterations } = self.settings.accuracy;
         let sharper = Accuracy { rms: limits.precision * rms, largest: limits.precision * largest, iterations };
         let off = |load: f64| (load / max_load - 1.0).abs();
-        let mut high = (beyond.approach, beyond.totals.load);
+        let mut high = (beyond.mean_penetration, beyond.totals.load);
         for searched in 1_u32.. {
-            let low = (self.at.last.approach, self.at.last.totals.load);
+            let low = (self.at.last.mean_penetration, self.at.last.totals.load);
             let closed = high.0 - low.0 < limits.bracket * self.settings.step;
             // The secant, and bisection where that does not help.
             let secant = ((max_load - low.1) / (high.1 - low.1)).clamp(0.02, 0.98);
             let part = if searched.is_multiple_of(3) { 0.5 } else { secant };
-            let approach = if closed { high.0 } else { low.0 + part * (high.0 - low.0) };
+            let mean_penetration = if closed { high.0 } else { low.0 + part * (high.0 - low.0) };
             let near = closed || off(low.1).min(off(high.1)) < limits.precise_within;
-            let mut attempt = self.attempt(approach, if near { sharper } else { self.settings.accuracy })?;
+            let mut attempt = self.attempt(mean_penetration, if near { sharper } else { self.settings.accuracy })?;
             let load = attempt.step.totals.load;
             let reached = off(load) < limits.load_tolerance;
             let jumps = closed && load > max_load;
@@ -36,7 +36,7 @@ impl CycleRun<'_> {
                 return Ok(Some(attempt));
             }
             if load > max_load {
-                high = (approach, load);
+                high = (mean_penetration, load);
                 continue;
             }
             self.accept(attempt);

@@ -1,9 +1,9 @@
-//! One step of a cycle: an equilibrium at an approach near the one before, and the energy dissipated in between.
+//! One step of a cycle: an equilibrium at a mean penetration near the one before, and the energy dissipated in between.
 //!
-//! Between events the states are a continuous curve on which `F = dΠ/dΔ`, so that `∫F dΔ − ΔΠ` vanishes; in an event the energy falls at one approach, by
-//! the energy dissipated. The integral has errors of both signs. An event is therefore counted where the sum of `∫F dΔ − ΔΠ` since the last one exceeds its
-//! uncertainty, and an apparent gain is subtracted from the next event. A gain must not shorten the step: repeating what comes out too small makes the sum too
-//! large.
+//! Between events the states are a continuous curve on which `F = dΠ/dΔ`, so that `∫F dΔ − ΔΠ` vanishes; in an event the energy falls at one mean
+//! penetration, by the energy dissipated. The integral has errors of both signs. An event is therefore counted where the sum of `∫F dΔ − ΔΠ` since the last
+//! one exceeds its uncertainty, and an apparent gain is subtracted from the next event. A gain must not shorten the step: repeating what comes out too small
+//! makes the sum too large.
 //!
 //! A step is halved where a jump of the load makes its integral uncertain by more than [`Settings::jump_tolerance`]. It is also halved where the load may
 //! have passed through the maximum tension, before a jump or, with attraction of a range, smoothly. The next steps are as short, until the uncertainty is
@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 pub struct Settings {
     /// Loads at which the path reverses \[E* dx²\], ascending.
     pub max_loads: Vec<f64>,
-    /// Step of the approach \[dx\].
+    /// Step of the mean penetration \[dx\].
     pub step: f64,
     /// Largest error that a jump of the load may cause in the integral over a step, relative to the energy dissipated so far: longer steps are halved.
     pub jump_tolerance: f64,
@@ -89,7 +89,7 @@ pub(crate) struct Attempt {
 
 /// A step as a point of the loop.
 fn on_loop(step: &Step) -> OnLoop {
-    OnLoop { approach: step.approach, load: step.totals.load, stiffness: step.stiffness }
+    OnLoop { mean_penetration: step.mean_penetration, load: step.totals.load, stiffness: step.stiffness }
 }
 
 /// An unfinished cycle with its problem and work space.
@@ -119,7 +119,7 @@ impl<'a> CycleRun<'a> {
                 cycle: Cycle::default(),
                 done: Done::default(),
                 state: State { pressure: Vec::new(), ..problem.apart(start)? },
-                last: Step { approach: start, ..Step::default() },
+                last: Step { mean_penetration: start, ..Step::default() },
                 dissipated: 0.0,
                 level: 0,
                 max_tension: None,
@@ -145,15 +145,15 @@ impl<'a> CycleRun<'a> {
         regions(self.problem, &self.at.state, &self.at.labels, &self.settings.summits)
     }
 
-    /// Equilibrium at an approach, from the last state extrapolated, with all contacts that form there.
-    pub(crate) fn attempt(&mut self, approach: f64, accuracy: Accuracy) -> Result<Attempt, PhysicsError> {
-        let mut state = self.predict(approach)?;
+    /// Equilibrium at a mean penetration, from the last state extrapolated, with all contacts that form there.
+    pub(crate) fn attempt(&mut self, mean_penetration: f64, accuracy: Accuracy) -> Result<Attempt, PhysicsError> {
+        let mut state = self.predict(mean_penetration)?;
         let outcome = self.relax(&mut state, accuracy, &ANY)?;
         self.conclude(state, outcome)
     }
 
     /// The last state extrapolated.
-    fn predict(&mut self, approach: f64) -> Result<State, PhysicsError> {
+    fn predict(&mut self, mean_penetration: f64) -> Result<State, PhysicsError> {
         let mut state = State { pressure: filled(self.problem.half_space.points(), 0.0)?, ..self.at.state.clone() };
         let rate = match self.rate.take() {
             Some(rate) => rate,
@@ -164,12 +164,13 @@ impl<'a> CycleRun<'a> {
                 rate
             }
         };
-        let length = (approach - state.approach) * (self.problem.numerics.steps.max_rate / largest(&rate.displacement)).min(1.0);
+        let length =
+            (mean_penetration - state.mean_penetration) * (self.problem.numerics.steps.max_rate / largest(&rate.displacement)).min(1.0);
         for (to, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
             *to += length * f64::from(*rate);
         }
         self.rate = Some(rate);
-        state.approach = approach;
+        state.mean_penetration = mean_penetration;
         if self.problem.attraction == Attraction::Range {
             self.limit_overlap(&mut state);
         }
@@ -185,7 +186,7 @@ impl<'a> CycleRun<'a> {
         }
     }
 
-    /// Moves a state to the equilibrium at its approach, unless an event takes the load out of `loads`.
+    /// Moves a state to the equilibrium at its mean penetration, unless an event takes the load out of `loads`.
     fn relax(&mut self, state: &mut State, accuracy: Accuracy, loads: &Loads) -> Result<Outcome, PhysicsError> {
         loop {
             let outcome = self.equilibrium.find_within(self.problem, state, accuracy, loads)?;
@@ -202,7 +203,7 @@ impl<'a> CycleRun<'a> {
         self.problem.settle_bonds(&mut state);
         let rate = self.equilibrium.rate(self.problem, &state)?;
         let (from, limits) = (&self.at.last, &self.problem.numerics.steps);
-        let reached = Step { approach: state.approach, totals, stiffness: rate.stiffness, ..Step::default() };
+        let reached = Step { mean_penetration: state.mean_penetration, totals, stiffness: rate.stiffness, ..Step::default() };
         let Work { straight, bend, across } = work_between(on_loop(from), on_loop(&reached));
         let work = straight + bend;
         let imbalance = work - (totals.energy - from.totals.energy);
@@ -307,7 +308,7 @@ impl<'a> CycleRun<'a> {
             self.at.level = self.at.level.min(halvings);
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
             let limit = self.settings.jump_tolerance * self.at.dissipated;
-            let mut state = self.predict(self.at.state.approach + length)?;
+            let mut state = self.predict(self.at.state.mean_penetration + length)?;
             let outcome = self.relax(&mut state, self.settings.accuracy, &self.loads_within_tolerance(length, limit))?;
             if outcome.left {
                 self.at.level += 1;
@@ -359,7 +360,7 @@ impl<'a> CycleRun<'a> {
     /// True if the load of an unloading step has jumped up after it may have passed a tension larger than that of all steps so far.
     fn may_hide_pull_off(&self, attempt: &Attempt) -> bool {
         let (from, to) = (&self.at.last, &attempt.step);
-        let before_jump = self.extrapolated_load(to.approach - from.approach);
+        let before_jump = self.extrapolated_load(to.mean_penetration - from.mean_penetration);
         attempt.across > 0.0 && to.totals.load > from.totals.load && self.exceeds_max_tension(before_jump)
     }
 
@@ -375,7 +376,11 @@ impl<'a> CycleRun<'a> {
         let known = self.at.max_tension.as_ref().map_or(0.0, |(known, ..)| *known).min(from.totals.load).min(to.totals.load);
         // An event after the maximum tension may look like a gain of energy, since the integral misses that.
         let has_event = to.imbalance.abs() > self.resolution(to.uncertainty);
-        let least = if has_event { self.extrapolated_load(to.approach - from.approach) } else { least_between(on_loop(from), on_loop(to)) };
+        let least = if has_event {
+            self.extrapolated_load(to.mean_penetration - from.mean_penetration)
+        } else {
+            least_between(on_loop(from), on_loop(to))
+        };
         known < 0.0 && least < (1.0 + self.problem.numerics.steps.hidden_tension) * known
     }
 

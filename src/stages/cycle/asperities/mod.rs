@@ -144,7 +144,7 @@ fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
         height_m: height[k],
         offset_j: offset[k],
         release_m: release[k],
-        approach_m: approach[k],
+        mean_penetration_m: approach[k],
     };
     Ok((0..count.min(frame.row_count())).map(row).collect())
 }
@@ -152,7 +152,9 @@ fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
 fn turning(of: Identity<'_>, cycle: &Cycle<State>, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
     let states = loads.iter().zip(&cycle.turning);
     let rows: Vec<(f64, f64, Kept, usize)> = states
-        .flat_map(|(load, (_, state))| state.kept(problem).into_iter().map(|kept| (*load, state.approach_m, kept, state.merged.len())))
+        .flat_map(|(load, (_, state))| {
+            state.kept(problem).into_iter().map(|kept| (*load, state.mean_penetration_m, kept, state.merged.len()))
+        })
         .collect();
     let covered = |status: Status| match status {
         Status::Covered { by, release_m } => Some((by, release_m)),
@@ -183,7 +185,7 @@ fn merged(of: Identity<'_>, cycle: &Cycle<State>) -> Result<Frame, StageError> {
         .text("branch", spots.iter().map(|s| step(s.step).branch.word()))
         .f64("max_load", spots.iter().map(|s| step(s.step).max_load))
         .i64("asperity_id", spots.iter().map(|s| s.asperity as i64))
-        .f64("approach_m", each(|s| s.approach_m))
+        .f64("approach_m", each(|s| s.mean_penetration_m))
         .i64("first_id", spots.iter().map(|s| s.spot.parts[0] as i64))
         .i64("second_id", spots.iter().map(|s| s.spot.parts[1] as i64))
         .f64("first_radius_m", each(|s| s.radii_m[0]))

@@ -110,7 +110,7 @@ fn adhesionless(of: Identity<'_>, steps: &[FreeStep]) -> Result<Frame, StageErro
     Ok(of
         .begin(&schema::ADHESIONLESS, steps.len())
         .i64("step", (0..steps.len()).map(|k| k as i64))
-        .f64("approach_m", each(|step| step.approach_m))
+        .f64("approach_m", each(|step| step.mean_penetration_m))
         .f64("load_n", each(|step| step.load_n))
         .f64("area_m2", each(|step| step.area_m2))
         .bool("converged", steps.iter().map(|step| step.is_converged))
@@ -120,7 +120,7 @@ fn adhesionless(of: Identity<'_>, steps: &[FreeStep]) -> Result<Frame, StageErro
 
 /// Point of the adhesionless curve, with E* \[Pa\].
 fn curve_point(step: &FreeStep, modulus_pa: f64) -> CurvePoint {
-    CurvePoint { penetration_m: step.approach_m, load_m2: step.load_n / modulus_pa, area_m2: step.area_m2 }
+    CurvePoint { penetration_m: step.mean_penetration_m, load_m2: step.load_n / modulus_pa, area_m2: step.area_m2 }
 }
 
 /// Maps as they are stored, with the load at their reversal.
@@ -133,7 +133,7 @@ fn maps<S>(cycle: &Cycle<S>, max_loads: &[f64]) -> Vec<ContactMap> {
             step: map.step as i64,
             branch: step.branch.word(),
             max_load: step.max_load.or_else(|| reversal_load(map.step)).unwrap_or(f64::NAN),
-            approach_m: step.approach_m,
+            approach_m: step.mean_penetration_m,
             load_n: step.load_n,
             stride: map.stride,
             gap_m: values(&map.gap_m),

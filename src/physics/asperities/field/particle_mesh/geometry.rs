@@ -4,8 +4,8 @@ use super::mesh::{Level, Loads, PlacedSources, Reader, Work, read, splines, tran
 use super::near::{Group, Rest};
 use super::pairs::{GONE, Known, Pairs, Sources, TARGETS_PER_CHUNK, Target};
 use super::plan::Real;
-use super::plan::{Accuracy, Mesh, Plan, ROUGH_ORDERS, ROUGH_WIDTH, WIDTH};
-use super::{FastSum, MARGIN, REACHES};
+use super::plan::{Accuracy, INTERMEDIATE_ORDERS, INTERMEDIATE_WIDTH, Mesh, Plan, WIDTH};
+use super::{CUTOFF_COUNT, FastSum, MARGIN};
 use crate::asperities::field::ewald::ORDERS;
 use crate::asperities::field::{Spots, places_in};
 use crate::cycle::Effort;
@@ -20,8 +20,8 @@ const MAX_LOOSENESS: f64 = 2.0;
 
 /// Number of targets from which on their chunks are distributed over threads, and number of chunks that one thread takes at least: fewer cost less than
 /// waking another thread.
-const MANY: usize = 2048;
-const AT_LEAST: usize = 16;
+const PARALLEL_TARGETS: usize = 2048;
+const MIN_CHUNKS: usize = 16;
 
 /// Near pairs of all targets, and mesh weights of sources and targets.
 #[derive(Debug, Clone, Default)]
@@ -41,7 +41,7 @@ pub(super) struct Geometry {
     pairs: Vec<Pairs>,
     old: Vec<Pairs>,
     fine: Meshes<f64, WIDTH, ORDERS>,
-    rough: Meshes<f32, ROUGH_WIDTH, ROUGH_ORDERS>,
+    rough: Meshes<f32, INTERMEDIATE_WIDTH, INTERMEDIATE_ORDERS>,
 }
 
 impl FastSum {
@@ -58,7 +58,7 @@ impl FastSum {
             geometry.chosen_for = [spots.index.len(), targets.len()];
         }
         let finest = geometry.finest;
-        let mut members: [Vec<usize>; REACHES] = Default::default();
+        let mut members: [Vec<usize>; CUTOFF_COUNT] = Default::default();
         let mut large = Vec::new();
         for (j, shortest) in shortest.iter().enumerate() {
             shortest.and_then(|shortest| self.level(finest, shortest)).map_or(&mut large, |step| &mut members[step]).push(j);
@@ -100,10 +100,10 @@ impl FastSum {
             };
             pairs.find(targets.iter().enumerate().map(target), known, &all, self.measure, &aloof);
         };
-        if targets.len() < MANY {
+        if targets.len() < PARALLEL_TARGETS {
             geometry.pairs.iter_mut().enumerate().zip(targets.chunks(TARGETS_PER_CHUNK)).for_each(find);
         } else {
-            geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TARGETS_PER_CHUNK)).with_min_len(AT_LEAST).for_each(find);
+            geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TARGETS_PER_CHUNK)).with_min_len(MIN_CHUNKS).for_each(find);
         }
         self.place_meshes(&levels, targets, kept.as_ref(), geometry);
     }
@@ -217,10 +217,10 @@ fn for_chunks<P>(pairs: P, values: &mut [f64], each: impl Fn(<P as IntoIterator>
 where
     P: IntoIterator<Item: Send> + IntoParallelIterator<Item = <P as IntoIterator>::Item, Iter: IndexedParallelIterator>,
 {
-    if values.len() < MANY {
+    if values.len() < PARALLEL_TARGETS {
         pairs.into_iter().zip(values.chunks_mut(TARGETS_PER_CHUNK)).for_each(|(pairs, values)| each(pairs, values));
     } else {
-        let chunks = pairs.into_par_iter().zip(values.par_chunks_mut(TARGETS_PER_CHUNK)).with_min_len(AT_LEAST);
+        let chunks = pairs.into_par_iter().zip(values.par_chunks_mut(TARGETS_PER_CHUNK)).with_min_len(MIN_CHUNKS);
         chunks.for_each(|(pairs, values)| each(pairs, values));
     }
 }

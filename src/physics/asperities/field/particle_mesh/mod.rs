@@ -41,11 +41,11 @@ use std::sync::{Arc, OnceLock};
 const LONGEST_CUTOFF: f64 = 0.45;
 
 /// Cutoffs to choose from, each `1/√2` of the one before.
-const REACHES: usize = 15;
-const CUTOFF: [f64; REACHES] = {
-    let mut all = [LONGEST_CUTOFF; REACHES];
+const CUTOFF_COUNT: usize = 15;
+const CUTOFF: [f64; CUTOFF_COUNT] = {
+    let mut all = [LONGEST_CUTOFF; CUTOFF_COUNT];
     let mut step = 1;
-    while step < REACHES {
+    while step < CUTOFF_COUNT {
         all[step] = all[step - 1] * FRAC_1_SQRT_2;
         step += 1;
     }
@@ -77,7 +77,7 @@ pub struct FastSum {
     compliance: f64,
     accuracy: Accuracy,
     /// Plans made so far, from the longest cutoff to the shortest.
-    plans: [OnceLock<Arc<Plan>>; REACHES],
+    plans: [OnceLock<Arc<Plan>>; CUTOFF_COUNT],
 }
 
 impl FastSum {
@@ -104,7 +104,7 @@ impl FastSum {
             order: Order::new(positions, length),
             compliance: material.compliance(),
             accuracy: Accuracy::of(tolerance),
-            plans: [const { OnceLock::new() }; REACHES],
+            plans: [const { OnceLock::new() }; CUTOFF_COUNT],
         }
     }
 
@@ -129,7 +129,7 @@ impl FastSum {
     fn longest(&self) -> usize {
         match self.measure.boundary {
             Boundary::Periodic => 0,
-            Boundary::Isolated => CUTOFF.iter().position(|reach| *reach <= LONGEST_CUTOFF_ISOLATED).unwrap_or(REACHES - 1),
+            Boundary::Isolated => CUTOFF.iter().position(|reach| *reach <= LONGEST_CUTOFF_ISOLATED).unwrap_or(CUTOFF_COUNT - 1),
         }
     }
 
@@ -144,12 +144,12 @@ impl FastSum {
     /// The estimate uses the shortest cutoff of each spot, their positions and the number of targets.
     fn finest(&self, shortest: &[Option<usize>], columns: &SpotColumns, targets: usize) -> usize {
         let clustering = clustering(columns, self.measure.length);
-        let mut spots = [0usize; REACHES];
+        let mut spots = [0usize; CUTOFF_COUNT];
         for step in shortest.iter().flatten() {
             spots[*step] += 1;
         }
         let cost = |finest: usize| {
-            let mut counts = [0usize; REACHES];
+            let mut counts = [0usize; CUTOFF_COUNT];
             for (shortest, count) in spots.iter().enumerate() {
                 if let Some(step) = self.level(finest, shortest) {
                     counts[step] += count;
@@ -165,8 +165,8 @@ impl FastSum {
             }
             cost
         };
-        let all = (self.longest()..REACHES).map(|step| (step, cost(step)));
-        all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(REACHES - 1, |(step, _)| step)
+        let all = (self.longest()..CUTOFF_COUNT).map(|step| (step, cost(step)));
+        all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(CUTOFF_COUNT - 1, |(step, _)| step)
     }
 
     /// Sources of the exact fields and of the moments.
@@ -187,7 +187,7 @@ impl FastSum {
 }
 
 /// Clustering: mean number of spots near a spot relative to a uniform distribution, for each cutoff.
-fn clustering(columns: &SpotColumns, length: f64) -> [f64; REACHES] {
+fn clustering(columns: &SpotColumns, length: f64) -> [f64; CUTOFF_COUNT] {
     let n = columns.len();
     let mut counts = Vec::new();
     std::array::from_fn(|step| {
@@ -217,7 +217,7 @@ impl Interaction for FastSum {
         }
     }
 
-    fn approach(
+    fn along_path(
         &self,
         spots: &Spots,
         rates: &[f64],

@@ -43,12 +43,12 @@ impl Real for f32 {
 ///
 /// It is the number of mesh points per direction over which a source is spread.
 pub(super) const WIDTH: usize = 12;
-pub(super) const ROUGH_WIDTH: usize = 8;
+pub(super) const INTERMEDIATE_WIDTH: usize = 8;
 
 /// Orders of the far field on the mesh of derivatives, and its error relative to the largest derivative.
 ///
 /// Linear systems are solved no more accurately than this.
-pub(super) const ROUGH_ORDERS: usize = 2;
+pub(super) const INTERMEDIATE_ORDERS: usize = 2;
 const DERIVATIVE_TOLERANCE: f64 = 1e-4;
 
 /// `[(2m − 1)!!]²`: `∇^2m (1/r)` is this factor times `1/r^(2m+1)` in the plane.
@@ -101,7 +101,12 @@ impl Accuracy {
         let girth = (10.0 * tolerance).powf(0.125).min(0.2);
         // The field of one spot there is at most a fourth of the largest displacement.
         let aloof = (0.03 / (4.0 * tolerance)).powf(0.125).max(3.0);
-        Self { edge, waves: [waves(WIDTH, tolerance).max(edge), waves(ROUGH_WIDTH, DERIVATIVE_TOLERANCE.max(tolerance))], girth, aloof }
+        Self {
+            edge,
+            waves: [waves(WIDTH, tolerance).max(edge), waves(INTERMEDIATE_WIDTH, DERIVATIVE_TOLERANCE.max(tolerance))],
+            girth,
+            aloof,
+        }
     }
 }
 
@@ -249,7 +254,7 @@ impl Plan {
             reach,
             smooth: Smooth::new(alpha, reach),
             fine: Arc::new(Mesh::new(size(accuracy.waves[0], WIDTH), alpha, WIDTH, boundary)),
-            rough: Arc::new(Mesh::new(size(accuracy.waves[1], ROUGH_WIDTH), alpha, ROUGH_WIDTH, boundary)),
+            rough: Arc::new(Mesh::new(size(accuracy.waves[1], INTERMEDIATE_WIDTH), alpha, INTERMEDIATE_WIDTH, boundary)),
         }
     }
 }

@@ -50,7 +50,7 @@ impl LocalProblem {
             *radius = was + (d * span).clamp(-0.3 * was, 0.3 * was);
         }
         self.radius[at] = value;
-        self.approach = from.approach + from.slope * span;
+        self.mean_penetration = from.mean_penetration + from.slope * span;
         self.solve(problem, Hold::Radius(at), effort)
     }
 
@@ -67,7 +67,7 @@ impl LocalProblem {
             return Ok(CurveEnd::Beyond);
         }
         // Near a fold the radius changes twice as fast as its rate predicts.
-        let left = (target - self.approach).abs();
+        let left = (target - self.mean_penetration).abs();
         let mut stride = (2.0 * left / before.slope.abs()).clamp(1e-4 * self.radius[at], 0.2 * self.radius[at]);
         let beyond = loop {
             let left = (bound - before.at).abs();
@@ -78,7 +78,7 @@ impl LocalProblem {
                     if point.slope * ahead <= 0.0 {
                         break point;
                     }
-                    if (point.approach - target) * path_sense > 0.0 {
+                    if (point.mean_penetration - target) * path_sense > 0.0 {
                         return Ok(CurveEnd::Beyond);
                     }
                     self.way.push(point.clone());
@@ -97,7 +97,7 @@ impl LocalProblem {
             }
         };
         self.bracket(problem, at, before, beyond, effort)?;
-        Ok(if (self.approach - target) * path_sense > 0.0 { CurveEnd::Beyond } else { CurveEnd::Fold })
+        Ok(if (self.mean_penetration - target) * path_sense > 0.0 { CurveEnd::Beyond } else { CurveEnd::Fold })
     }
 
     /// The fold between two states of the curve, by the Illinois rule on `dΔ/da`.
@@ -128,7 +128,7 @@ impl LocalProblem {
             }
         }
         self.radius.clone_from(&before.radius);
-        self.approach = before.approach;
+        self.mean_penetration = before.mean_penetration;
         self.evaluate(problem, effort);
         self.way.push(before);
         Ok(())
@@ -136,6 +136,6 @@ impl LocalProblem {
 
     fn point(&mut self, problem: &Problem, at: usize) -> CurveState {
         let (direction, slope) = self.along(problem, at);
-        CurveState { radius: self.radius.clone(), approach: self.approach, direction, slope, at: self.radius[at] }
+        CurveState { radius: self.radius.clone(), mean_penetration: self.mean_penetration, direction, slope, at: self.radius[at] }
     }
 }

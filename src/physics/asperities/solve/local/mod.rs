@@ -35,7 +35,7 @@ pub(crate) struct OutsideField {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct CurveState {
     pub(crate) radius: Vec<f64>,
-    pub(crate) approach: f64,
+    pub(crate) mean_penetration: f64,
     /// Derivatives of radii and mean penetration to the radius `at` \[m\] of the member that is followed.
     pub(crate) direction: Vec<f64>,
     pub(crate) slope: f64,
@@ -46,7 +46,7 @@ pub(crate) struct CurveState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
     /// Mean penetration.
-    Approach,
+    MeanPenetration,
     /// Radius of a member, by its position.
     Radius(usize),
     /// Penetration of a watched asperity, by its position \[m\].
@@ -73,7 +73,7 @@ impl Extent {
     fn sums(self) -> SumPrecision {
         match self {
             Self::Whole => SumPrecision::Full,
-            Self::Part => SumPrecision::Rough,
+            Self::Part => SumPrecision::Intermediate,
         }
     }
 }
@@ -82,7 +82,7 @@ impl Extent {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LocalProblem {
     /// Mean penetration \[m\].
-    pub(crate) approach: f64,
+    pub(crate) mean_penetration: f64,
     reference: f64,
     pub(crate) members: Vec<OutsideField>,
     /// Contact radii of the members \[m\].
@@ -121,11 +121,11 @@ impl LocalProblem {
         problem: &Problem,
         contacts: &[(usize, PenetrationTrace, f64)],
         free: &[(usize, PenetrationTrace)],
-        approach: f64,
+        mean_penetration: f64,
         extent: Extent,
         effort: &mut Effort,
     ) {
-        (self.approach, self.reference, self.extent) = (approach, approach, extent);
+        (self.mean_penetration, self.reference, self.extent) = (mean_penetration, mean_penetration, extent);
         self.members.clear();
         self.way.clear();
         self.radius.clear();
@@ -140,7 +140,7 @@ impl LocalProblem {
         let n = self.members.len();
         for (k, (i, trace, _)) in contacts.iter().enumerate() {
             let (asperity, a) = (&problem.asperities[*i], self.radius[k]);
-            let displaced = approach + problem.heights[*i] - asperity.penetration(a);
+            let displaced = mean_penetration + problem.heights[*i] - asperity.penetration(a);
             let by_members: f64 = self.slopes[k * n..(k + 1) * n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
             self.members[k].outside = displaced - self.field[k];
             self.members[k].drift = bounded(1.0 - trace.rate - by_members);
@@ -150,7 +150,7 @@ impl LocalProblem {
         problem.field.rows(&self.work.spots, &places, self.extent.sums(), effort, |k, field, slopes| {
             let (i, trace) = free[k];
             let by_members: f64 = slopes.iter().zip(&speeds).map(|(s, v)| s * v).sum();
-            let displaced = approach + problem.heights[i] - trace.ahead(approach);
+            let displaced = mean_penetration + problem.heights[i] - trace.ahead(mean_penetration);
             let drift = bounded(1.0 - trace.rate - by_members);
             self.watched.push(OutsideField { asperity: i, outside: displaced - field, drift });
         });
@@ -194,7 +194,7 @@ impl LocalProblem {
     /// An asperity with a known displacement at the present mean penetration \[m\]; `drift` is the rate of its part by the outside.
     pub(crate) fn place(&mut self, problem: &Problem, asperity: usize, displacement: f64, drift: f64, effort: &mut Effort) -> OutsideField {
         let field = self.field_at(problem, asperity, effort);
-        let outside = displacement - field - drift * (self.approach - self.reference);
+        let outside = displacement - field - drift * (self.mean_penetration - self.reference);
         OutsideField { asperity, outside, drift }
     }
 
@@ -211,7 +211,7 @@ impl LocalProblem {
 
     /// Displacement by the outside at the present mean penetration \[m\].
     fn outside(&self, place: &OutsideField) -> f64 {
-        place.outside + place.drift * (self.approach - self.reference)
+        place.outside + place.drift * (self.mean_penetration - self.reference)
     }
 
     /// Evaluates fields, slopes and residuals of the members; returns the largest residual with its asperity. Fields of the same radii are kept.
@@ -226,15 +226,12 @@ impl LocalProblem {
         for k in 0..self.members.len() {
             let member = self.members[k];
             let i = member.asperity;
-            let residual = self.approach + problem.heights[i]
+            let residual = self.mean_penetration + problem.heights[i]
                 - self.outside(&member)
                 - self.field[k]
                 - problem.asperities[i].penetration(self.radius[k]);
             self.residual.push(residual);
-            // A residual that is not a number must not pass as a small one.
-            if residual.is_nan() || residual.abs() > worst.residual_m {
-                worst = NotConverged::residual(residual.abs(), i);
-            }
+            worst = worst.or_residual(residual, i);
         }
         worst
     }
@@ -279,8 +276,8 @@ impl LocalProblem {
         let n = self.members.len();
         let mut step = self.residual.clone();
         self.assemble(problem, 0.0);
-        let approach = match hold {
-            Hold::Approach => {
+        let mean_penetration = match hold {
+            Hold::MeanPenetration => {
                 self.work.lu.factor(&self.work.matrix, n);
                 self.work.lu.solve(&mut step);
                 0.0
@@ -305,7 +302,7 @@ impl LocalProblem {
                 step.pop().unwrap_or(0.0)
             }
         };
-        (step, approach)
+        (step, mean_penetration)
     }
 
     /// Newton's method from the present radii and mean penetration.
@@ -343,15 +340,15 @@ impl LocalProblem {
         self.exchange(at);
         self.work.lu.factor(&self.work.matrix, n);
         self.work.lu.solve(&mut direction);
-        let approach = std::mem::replace(&mut direction[at], 1.0);
-        (direction, approach)
+        let mean_penetration = std::mem::replace(&mut direction[at], 1.0);
+        (direction, mean_penetration)
     }
 
     /// Penetration of a watched asperity \[m\].
     pub(crate) fn penetration_of(&mut self, problem: &Problem, watched: usize, effort: &mut Effort) -> f64 {
         let place = self.watched[watched];
         let field = self.field_at(problem, place.asperity, effort);
-        self.approach + problem.heights[place.asperity] - self.outside(&place) - field
+        self.mean_penetration + problem.heights[place.asperity] - self.outside(&place) - field
     }
 
     /// Penetrations of the watched asperities, with their rates for given rates of the members.
@@ -360,9 +357,9 @@ impl LocalProblem {
         let mut traces = Vec::with_capacity(places.len());
         problem.field.rows(&self.work.spots, &places, self.extent.sums(), effort, |k, field, slopes| {
             let place = &self.watched[k];
-            let value = self.approach + problem.heights[place.asperity] - self.outside(place) - field;
+            let value = self.mean_penetration + problem.heights[place.asperity] - self.outside(place) - field;
             let by_members: f64 = slopes.iter().zip(rates).map(|(s, v)| s * v).sum();
-            traces.push(PenetrationTrace::new(self.approach, value, 1.0 - place.drift - by_members));
+            traces.push(PenetrationTrace::new(self.mean_penetration, value, 1.0 - place.drift - by_members));
         });
         traces
     }
@@ -390,15 +387,15 @@ impl LocalProblem {
     }
 
     /// Moves to another mean penetration \[m\] by linear extrapolation of the penetrations.
-    pub(crate) fn ahead(&mut self, problem: &Problem, approach: f64) {
+    pub(crate) fn ahead(&mut self, problem: &Problem, mean_penetration: f64) {
         let (rates, _) = self.rates(problem);
-        let way = approach - self.approach;
+        let way = mean_penetration - self.mean_penetration;
         for (k, rate) in rates.into_iter().enumerate() {
             let (asperity, a) = (&problem.asperities[self.members[k].asperity], self.radius[k]);
             let speed = asperity.penetration_slope(a) * rate;
             self.radius[k] = asperity.radius_ahead(asperity.penetration(a) + speed * way);
         }
-        self.approach = approach;
+        self.mean_penetration = mean_penetration;
     }
 
     /// Moves over a fold: member `at` by a share of its radius, the others along the tangent, Δ by `gap` \[m\].
@@ -408,7 +405,7 @@ impl LocalProblem {
         for (radius, d) in self.radius.iter_mut().zip(&direction) {
             *radius += (d * span).clamp(-0.05 * *radius, 0.05 * *radius);
         }
-        self.approach += gap;
+        self.mean_penetration += gap;
     }
 }
 
@@ -442,13 +439,13 @@ impl NonlinearSystem for Descent<'_> {
             self.step.0.iter_mut().for_each(|s| *s *= most / stride);
             self.step.1 *= most / stride;
         }
-        self.start = (self.local.radius.clone(), self.local.approach);
+        self.start = (self.local.radius.clone(), self.local.mean_penetration);
     }
 
     fn advance(&mut self, share: f64) {
         for ((radius, from), s) in self.local.radius.iter_mut().zip(&self.start.0).zip(&self.step.0) {
             *radius = from + share * s;
         }
-        self.local.approach = self.start.1 + share * self.step.1;
+        self.local.mean_penetration = self.start.1 + share * self.step.1;
     }
 }

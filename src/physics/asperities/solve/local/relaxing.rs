@@ -48,8 +48,8 @@ impl Relaxing for Part<'_> {
 
     fn finish(&mut self) -> bool {
         let rest = self.patch.radius.clone();
-        let found =
-            self.patch.solve_with(self.problem, Hold::Approach, Damping::PATIENT, self.effort).is_ok() && self.patch.rates(self.problem).1;
+        let found = self.patch.solve_with(self.problem, Hold::MeanPenetration, Damping::PATIENT, self.effort).is_ok()
+            && self.patch.rates(self.problem).1;
         if !found {
             self.patch.radius = rest;
         }

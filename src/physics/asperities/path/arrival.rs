@@ -1,4 +1,4 @@
-//! Accuracy of events, reversals and global solves. That of the path in between is [`crate::asperities::contact::numerics::Accuracy`].
+//! Arrival of a path at the mean penetration of a global solve.
 
 /// Arrival of the contact at the mean penetration at which it is corrected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
