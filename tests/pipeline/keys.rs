@@ -85,7 +85,7 @@ fn reg_ids_of_the_asperity_model() {
     let campaign = Campaign::new(Spec::parse(&text, "paper.toml").unwrap(), PathBuf::from("out"));
     let cases: Vec<&str> = campaign.cases.iter().map(|case| case.id.as_str()).collect();
     assert_eq!(cases[..3], ["H0.80_z128-6adbcc12", "H0.80_z64-f3e3216c", "H0.80_z128-ff1e5233"]);
-    assert_eq!(campaign.cycles[0].id, "H0.80_z128_r00-a4020155");
+    assert_eq!(campaign.cycles[0].id, "H0.80_z128_r00-42d64930");
 }
 
 #[test]
