@@ -2,7 +2,8 @@
 //!
 //! Three calls of a library user: a surface ([`surface`]), a method on it ([`asperities::Asperities`] or [`elements::Elements`]), and its
 //! [`run`](cycle::Method::run), which returns a [`cycle::Cycle`]. All quantities are in SI units; compression and penetration are positive. The crate opens no
-//! files. Every method implements [`cycle::Method`].
+//! files. Every method implements [`cycle::Method`]. The numerical choices of each, [`asperities::Numerics`] and [`elements::Numerics`], are options with a
+//! default; their fields state their effect.
 //!
 //! # A loop of the asperity model
 //! ```
