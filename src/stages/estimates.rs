@@ -84,12 +84,8 @@ pub(super) fn seed(campaign: &Campaign, unit: &SurfaceUnit) -> [u8; 32] {
 /// Table of one row with the estimates of a surface.
 pub(super) fn surface_table(unit: &SurfaceUnit, header: &SurfaceHeader, of: &SurfaceEstimates) -> Result<Frame, FrameError> {
     let texture = header.measured.as_ref().and_then(|of| of.texture.as_ref());
-    let mut artefacts = header.artefact_columns();
-    for name in ["outlier_share", "line_jump_share", "noise_share", "curvature_ratio"] {
-        if artefacts.iter().all(|(known, _)| *known != name) {
-            artefacts.push((name, None));
-        }
-    }
+    let artefacts = header.artefact_columns();
+    let artefact = |name: &str| artefacts.iter().find(|(known, _)| *known == name).and_then(|(_, value)| *value);
     let overshoot = header.measured.as_ref().map(|measured| measured.overshoot_m / header.rms_height_m);
     let frame = Frame::of(&SURFACE_ESTIMATES)
         .text("surface_id", [unit.id.as_str()])
@@ -113,7 +109,10 @@ pub(super) fn surface_table(unit: &SurfaceUnit, header: &SurfaceHeader, of: &Sur
         .f64("texture_slope_ratio", [texture.map(|of| of.slope_ratio)])
         .f64("texture_str", [texture.map(|of| of.aspect_ratio_str)])
         .f64("filter_overshoot", [overshoot.filter(finite)]);
-    artefacts.into_iter().fold(frame, |frame, (name, value)| frame.f64(name, [value.filter(finite)])).build()
+    ["outlier_share", "line_jump_share", "noise_share", "curvature_ratio"]
+        .into_iter()
+        .fold(frame, |frame, name| frame.f64(name, [artefact(name).filter(finite)]))
+        .build()
 }
 
 /// Reads the estimates of a surface.

@@ -81,8 +81,8 @@ fn touched(cycle: &Cycle<()>, (turning, max_load): (usize, f64)) -> Vec<usize> {
 fn resolution_j(cycle: &Cycle<()>, (turning, max_load): (usize, f64)) -> Option<f64> {
     let loading = || cycle.steps[..=turning].iter().filter(|step| step.branch == Branch::Loading);
     let unloading = || cycle.steps.iter().filter(|step| step.max_load == Some(max_load));
-    let at_reversal = loading().last()?.work_j;
-    let loss_j = at_reversal + unloading().last()?.work_j;
+    let at_reversal = loading().next_back()?.work_j;
+    let loss_j = at_reversal + unloading().next_back()?.work_j;
     let works = loading().map(|step| step.work_j).chain(unloading().map(|step| at_reversal + step.work_j));
     let work_j = works.map(f64::abs).fold(0.0, f64::max);
     // Without adhesion the events of loading are undone on unloading, and nothing but rounding remains.

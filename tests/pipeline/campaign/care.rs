@@ -80,7 +80,7 @@ fn e2e_a_receipt_tells_what_when_and_with_what() {
     for stage in ["generate", "extract", "cycle"] {
         assert!(cycle["preimages"][stage]["meaning"].as_u64().unwrap() > 0, "{stage}");
     }
-    assert_eq!(cycle["files"].as_array().unwrap().len(), 5);
+    assert_eq!(cycle["files"].as_array().unwrap().len(), 6);
     assert_eq!(
         of("report")["files"].as_array().unwrap().len(),
         (5 + 8) * if cfg!(feature = "raster") { 3 } else { 1 } + 2,
@@ -169,8 +169,8 @@ fn e2e_gc_takes_only_what_no_spec_names() {
     let answer = json(&stdout(&bench.look("gc", &["--delete", "--json"])));
     assert_eq!(
         answer["leftovers"].as_array().unwrap().len(),
-        13,
-        "of two surfaces each two files and a folder with their three receipts; and a torn file"
+        15,
+        "of two surfaces each three files and a folder with their three receipts; and a torn file"
     );
     let after = files(&bench.out());
     assert!(after.contains_key(Path::new("surfaces/notes-20240131.h5")) && bench.out().join("cycles/H0.80-deadbeef").is_dir());

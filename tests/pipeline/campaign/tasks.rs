@@ -19,7 +19,7 @@ fn victims(bench: &Bench) -> Vec<PathBuf> {
             |path: &&PathBuf| path.strip_prefix(bench.out()).unwrap().starts_with(folder) && path.to_string_lossy().ends_with(ending);
         all.iter().filter(fits).min().unwrap().clone()
     };
-    let files = [("surfaces", ".h5"), ("asperities", ".parquet"), ("estimates", ".parquet"), ("cycles", "steps.parquet")]
+    let files = [("surfaces", ".h5"), ("asperities", ".parquet"), ("cycles", "steps.parquet"), ("estimates", ".parquet")]
         .map(|(folder, ending)| first(folder, ending));
     files.into_iter().chain(["generate", "extract", "cycle"].map(|stage| first(&format!("receipts/{stage}"), ".json"))).collect()
 }
