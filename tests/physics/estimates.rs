@@ -9,7 +9,7 @@ use hysteron::physics::surface::summits::{Summit, find_summits};
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use hysteron::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
 use hysteron::physics::theory::estimates::{CycleEstimates, DengKesari, Ratios, Roughness, SurfaceEstimates};
-use hysteron::physics::theory::flattening::{flattening, measured_flattening, realised_flattening, shortest_wavelength};
+use hysteron::physics::theory::flattening::{RelativeFlattening, flattening, measured_flattening, realised_flattening, shortest_wavelength};
 use hysteron::physics::theory::{adhesionless_area, dalvi_loss, deng_kesari_loss_as_printed, pinning_loss};
 use ndarray::Array2;
 
@@ -51,6 +51,8 @@ fn law_estimates_are_those_of_the_single_models() {
     let all = CycleEstimates::of(&surface, Some(&spectrum), &summits, &material, &sphere()).unwrap();
     let (modulus, adhesion) = (material.contact_modulus_pa, material.work_of_adhesion_j_m2);
     let realised = realised_flattening(&spectrum, &realization_seed(3, 0), modulus);
+    let relative = RelativeFlattening::realised(&spectrum, &realization_seed(3, 0));
+    assert_eq!(relative.energies(modulus), realised);
     assert_eq!(all.ratios.persson_tosatti_realised, Some(realised.persson_tosatti(adhesion)));
     assert_eq!(all.ratios.conformity_realised, Some(realised.conformity(adhesion)));
     assert_eq!(all.ratios.sticky_line, Some(0.5 * realised.persson_tosatti(adhesion)));
@@ -86,6 +88,7 @@ fn law_estimates_of_heights_are_those_of_the_modes_that_made_them() {
     close("all roughness", a.whole_j_m2, b.whole_j_m2, 1e-10);
     close("shortest octave", a.octave_j_m2, b.octave_j_m2, 1e-10);
     let shortest = shortest_wavelength(map, cut_off).unwrap();
+    assert_eq!(found.flattening, RelativeFlattening::measured(map, shortest).unwrap());
     assert_eq!(measured_flattening(map, shortest, PAPER.contact_modulus_pa).unwrap(), a);
     assert_eq!((found.shortest_wavelength_m, found.per_shortest_wavelength(3.0)), (cut_off, 3.0));
     let longer = SurfaceEstimates { shortest_wavelength_m: 4.0 * cut_off, ..found };
