@@ -5,7 +5,9 @@ use std::process::Command;
 
 fn main() -> std::io::Result<()> {
     // Of `src` all but the Python package, which is a crate of its own.
-    for entry in std::fs::read_dir("src").into_iter().flatten().flatten().filter(|entry| entry.file_name() != "python") {
+    for entry in
+        std::fs::read_dir("src").into_iter().flatten().flatten().filter(|entry| entry.file_name() != "python")
+    {
         println!("cargo:rerun-if-changed={}", entry.path().display());
     }
     for path in [".git/HEAD", ".git/logs/HEAD", ".cargo_vcs_info.json"] {
@@ -16,7 +18,8 @@ fn main() -> std::io::Result<()> {
     }
     println!("cargo:rustc-env=HYSTERON_COMMIT={}", commit().unwrap_or_default());
     let compiler = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
-    let version = said(Command::new(compiler).arg("--version")).unwrap_or_else(|| "an unknown compiler".to_owned());
+    let version =
+        said(Command::new(compiler).arg("--version")).unwrap_or_else(|| "an unknown compiler".to_owned());
     let target = std::env::var("TARGET").unwrap_or_default();
     println!("cargo:rustc-env=HYSTERON_TOOLCHAIN={version}, {target}");
     println!("cargo:rerun-if-changed={TABLES}");
@@ -26,13 +29,17 @@ fn main() -> std::io::Result<()> {
 /// The page of the tables, which is not in the folder of the guide.
 const TABLES: &str = "schemas/README.md";
 
-/// Copies the pages of the guide with the links that they need as modules: `model.md` becomes `../model/index.html`.
+/// Copies the pages of the guide with the links that they need as modules:
+/// `model.md` becomes `../model/index.html`.
 fn guide(folder: &Path) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     for entry in std::fs::read_dir("src/guide")? {
         let name = entry?.file_name();
         let above = if name == "index.md" { "" } else { "../" };
-        std::fs::write(folder.join(&name), linked(&std::fs::read_to_string(Path::new("src/guide").join(&name))?, above))?;
+        std::fs::write(
+            folder.join(&name),
+            linked(&std::fs::read_to_string(Path::new("src/guide").join(&name))?, above),
+        )?;
     }
     std::fs::write(folder.join("tables.md"), std::fs::read_to_string(TABLES)?)
 }
@@ -49,12 +56,15 @@ fn to_module(part: &str, above: &str) -> String {
     match target.split_once(".md") {
         Some(("../../schemas/README", anchor)) => format!("{above}tables/index.html{anchor}){rest}"),
         Some(("index", anchor)) => format!("{above}index.html{anchor}){rest}"),
-        Some((page, anchor)) if !page.contains(['/', ':']) => format!("{above}{page}/index.html{anchor}){rest}"),
+        Some((page, anchor)) if !page.contains(['/', ':']) => {
+            format!("{above}{page}/index.html{anchor}){rest}")
+        }
         _ => part.to_owned(),
     }
 }
 
-/// The commit of this checkout, with a plus where files have been changed since; that of a released package; or none.
+/// The commit of this checkout, with a plus where files have been changed since; that of a released package;
+/// or none.
 fn commit() -> Option<String> {
     if Path::new(".git").exists() {
         let commit = said(Command::new("git").args(["rev-parse", "--short=12", "HEAD"]))?;

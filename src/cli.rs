@@ -16,8 +16,8 @@ pub use reference::{GUIDE, generated};
 pub use reference_limits::constants;
 
 use arguments::{
-    CampaignArguments, CompareArguments, CsvArguments, ExportArguments, FindingsArguments, FolderArguments, HowArguments, ImportArguments,
-    JobsArguments, OutputArguments, ShardsArguments, TalkArguments,
+    CampaignArguments, CompareArguments, CsvArguments, ExportArguments, FindingsArguments, FolderArguments,
+    HowArguments, ImportArguments, JobsArguments, OutputArguments, ShardsArguments, TalkArguments,
 };
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;

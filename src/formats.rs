@@ -113,8 +113,10 @@ const TIFF: Foreign = python("TIFF (Park Systems, Olympus and others)");
 const MNT: Foreign = python("MNT (Digital Surf Mountains)");
 const OLE: Foreign = python("an OLE document, such as MNT (Digital Surf Mountains)");
 const MATLAB: Foreign = python("MAT (MATLAB)");
-const EXCEL: Foreign = said("an Excel workbook", "save the heights as CSV or tab-separated text, one line per row of points");
-const IMAGE: Foreign = said("a picture", "a picture holds colours and not heights: export the heights of the scan itself");
+const EXCEL: Foreign =
+    said("an Excel workbook", "save the heights as CSV or tab-separated text, one line per row of points");
+const IMAGE: Foreign =
+    said("a picture", "a picture holds colours and not heights: export the heights of the scan itself");
 
 /// First bytes of formats that are not read.
 const MAGIC: [(&[u8], Foreign); 48] = [
@@ -169,7 +171,8 @@ const MAGIC: [(&[u8], Foreign); 48] = [
         b"ncols",
         said(
             "an ESRI ASCII grid",
-            "delete its heading lines and give cellsize as pixel_m (--pixel-m) and the unit of its heights (--unit)",
+            "delete its heading lines and give cellsize as pixel_m (--pixel-m) and the unit of its heights \
+             (--unit)",
         ),
     ),
 ];
@@ -213,7 +216,8 @@ const EXTENSIONS: [(&str, Foreign); 22] = [
 pub fn detect(first_bytes: &[u8]) -> Option<Found> {
     // Control characters other than tabs and the ends of lines and pages are not text. UTF-16 has its zeros.
     let binary = |byte: &u8| *byte < 0x20 && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c);
-    let begins = |magic: &[u8]| first_bytes.get(..magic.len()).is_some_and(|first| first.eq_ignore_ascii_case(magic));
+    let begins =
+        |magic: &[u8]| first_bytes.get(..magic.len()).is_some_and(|first| first.eq_ignore_ascii_case(magic));
     if let Some((_, foreign)) = MAGIC.iter().find(|(magic, _)| begins(magic)) {
         return Some(Found::Foreign(*foreign));
     }
@@ -223,7 +227,9 @@ pub fn detect(first_bytes: &[u8]) -> Option<Found> {
         [b'C', b'D', b'F', 1 | 2 | 5, ..] => Some(Found::Scan(Format::NetCdf3)),
         [b'P', b'K', 3, 4, ..] => Some(archive(first_bytes)),
         [] => None,
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some(Found::Foreign(said("text in UTF-16", "save it as UTF-8"))),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
+            Some(Found::Foreign(said("text in UTF-16", "save it as UTF-8")))
+        }
         bytes if bytes.iter().any(binary) => None,
         _ => Some(Found::Scan(Format::Text)),
     }
@@ -247,7 +253,8 @@ fn archive(first_bytes: &[u8]) -> Found {
 
 /// True for a part of a container of contact.engineering: its metadata, or a measurement as NetCDF.
 pub(crate) fn is_of_container(name: &[u8]) -> bool {
-    [&b"meta.yml"[..], b"index.json", b"meta.json", b"metadata.json"].contains(&name) || name.ends_with(b".nc")
+    [&b"meta.yml"[..], b"index.json", b"meta.json", b"metadata.json"].contains(&name)
+        || name.ends_with(b".nc")
 }
 
 /// Refusal of a container of contact.engineering, whose parts may come in any order.
@@ -263,7 +270,8 @@ pub(crate) fn container() -> String {
 /// Recognises the format of a file without reading more than its beginning.
 ///
 /// # Errors
-/// Error of the system, or a file that is not regular. The inner error is a file in a format that is not read.
+/// Error of the system, or a file that is not regular. The inner error is a file in a format that is not
+/// read.
 pub fn recognize(path: &Path) -> io::Result<Result<Found, Refusal>> {
     // What is not a file, such as a pipe or a device, might not end.
     if !std::fs::metadata(path)?.is_file() {
@@ -278,7 +286,8 @@ pub fn recognize(path: &Path) -> io::Result<Result<Found, Refusal>> {
     if found == Some(Found::Hdf5) && is_video {
         return Ok(Err(JPK_VIDEO.refusal(path)));
     }
-    let named = extension.and_then(|ending| EXTENSIONS.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known)));
+    let named =
+        extension.and_then(|ending| EXTENSIONS.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known)));
     Ok(match named.map(|(_, foreign)| Found::Foreign(*foreign)).or(found) {
         Some(Found::Foreign(foreign)) => Err(foreign.refusal(path)),
         Some(found) => Ok(found),
@@ -293,7 +302,8 @@ fn unknown(first_bytes: &[u8]) -> Refusal {
         bytes if bytes.iter().all(|byte| *byte == 0) => "unknown file format: the file begins with zeros",
         _ => "unknown file format",
     };
-    let help = "formats that are read: HDF5, NetCDF, X3P, npy, text; SurfaceTopography (Python) and Gwyddion convert others";
+    let help = "formats that are read: HDF5, NetCDF, X3P, npy, text; SurfaceTopography (Python) and Gwyddion \
+         convert others";
     Refusal { problem: what.to_owned(), help: help.to_owned() }
 }
 
@@ -306,7 +316,8 @@ impl Foreign {
                  from SurfaceTopography.IO import open_topography\n    \
                  open_topography({file}).topography().to_netcdf({nc})"
             ),
-            // NetCDF-3 holds ASCII alone, and a unit in UTF-8, which SUR has no place for, is none; a text holds it.
+            // NetCDF-3 holds ASCII alone, and a unit in UTF-8, which SUR has no place for, is none; a text
+            // holds it.
             Way::PythonText => format!(
                 "convert it in Python (pip install SurfaceTopography) and import the result:\n    \
                  from SurfaceTopography.IO import open_topography\n    \
@@ -320,7 +331,9 @@ impl Foreign {
                  numpy.save({}, frames[0]); print(\"--pixel-m\", 1e-9 * pixel_nm)",
                 quoted(&path.with_extension("npy"))
             ),
-            Way::Gwyddion => "open it in Gwyddion and save it as text (ASCII data matrix, with the heading)".to_owned(),
+            Way::Gwyddion => {
+                "open it in Gwyddion and save it as text (ASCII data matrix, with the heading)".to_owned()
+            }
             Way::Npz => format!(
                 "save one of its arrays as npy in Python:\n    import numpy\n    \
                  numpy.save({}, numpy.load({file})[\"NAME\"])",
@@ -340,6 +353,7 @@ fn quoted(path: &Path) -> String {
 
 /// A path as one word of a shell, which no character can end.
 fn in_shell(path: &Path) -> String {
-    let text: String = path.to_string_lossy().chars().map(|sign| if sign.is_control() { '?' } else { sign }).collect();
+    let text: String =
+        path.to_string_lossy().chars().map(|sign| if sign.is_control() { '?' } else { sign }).collect();
     format!("'{}'", text.replace('\'', "'\\''"))
 }

@@ -1,8 +1,9 @@
 //! The key of a unit of work: a hash of exactly what the unit reads.
 //!
-//! It is the hash of a canonical JSON of: the version of this scheme, the stage, a number of the stage's meaning (raised by hand when the stage's
-//! results change), the parameters that the stage reads with every default written out, and the keys of what it reads. Program version,
-//! host, threads and clock are no part of it, so a new release does not make finished data stale in silence.
+//! It is the hash of a canonical JSON of: the version of this scheme, the stage, a number of the stage's
+//! meaning (raised by hand when the stage's results change), the parameters that the stage reads with every
+//! default written out, and the keys of what it reads. Program version, host, threads and clock are no part
+//! of it, so a new release does not make finished data stale in silence.
 
 use serde_json::{Value, json};
 
@@ -18,7 +19,8 @@ pub fn preimage(stage: &str, meaning: u32, reads: &Value) -> Value {
 /// Key of a task from inputs that are canonical JSON: 64 hexadecimal digits.
 #[must_use]
 pub fn key_of_text(stage: &str, meaning: u32, reads: &str) -> String {
-    let text = format!("{{\"meaning\":{meaning},\"reads\":{reads},\"scheme\":{SCHEME},\"stage\":\"{stage}\"}}");
+    let text =
+        format!("{{\"meaning\":{meaning},\"reads\":{reads},\"scheme\":{SCHEME},\"stage\":\"{stage}\"}}");
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 

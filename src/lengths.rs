@@ -3,9 +3,9 @@
 /// The units of length that are understood, as an error lists them.
 pub const LENGTHS: &str = "km, m, mm, µm or um, nm, pm, Å or A, in, mil";
 
-/// The units of length as a regular expression of JSON Schema: abbreviations, and any longer word for one that is written out.
-pub const LENGTH_PATTERN: &str =
-    "^\\s*(km|m|mm|[\u{b5}\u{3bc}]m|um|nm|pm|[\u{c5}\u{212b}]|A\u{30a}?|in|mil|[A-Za-z\u{e5}\u{f6}]{3,})?\\s*$";
+/// The units of length as a regular expression of JSON Schema: abbreviations, and any longer word for one
+/// that is written out.
+pub const LENGTH_PATTERN: &str = "^\\s*(km|m|mm|[\u{b5}\u{3bc}]m|um|nm|pm|[\u{c5}\u{212b}]|A\u{30a}?|in|mil|[A-Za-z\u{e5}\u{f6}]{3,})?\\s*$";
 
 /// Length of a unit \[m\]; nothing for an unknown unit.
 #[must_use]
@@ -54,7 +54,8 @@ pub fn quantity(text: &str) -> Option<(f64, Option<&str>)> {
     value.is_finite().then_some((value, Some(unit).filter(|unit| !unit.is_empty())))
 }
 
-/// The sizes of a scan \[m\] along x and y: "5um", "5e-6" (metres) or "5um x 3um"; one number holds for x alone.
+/// The sizes of a scan \[m\] along x and y: "5um", "5e-6" (metres) or "5um x 3um"; one number holds for x
+/// alone.
 #[must_use]
 pub fn sizes(text: &str) -> Option<Vec<f64>> {
     let parts: Vec<&str> = text.split(['x', 'X', '\u{d7}', '*']).collect();
@@ -64,7 +65,9 @@ pub fn sizes(text: &str) -> Option<Vec<f64>> {
     let read: Vec<_> = parts.iter().map(|part| quantity(part)).collect::<Option<_>>()?;
     // "5 x 3 um": the unit behind the last number holds for both.
     let last = read.last().and_then(|(_, unit)| *unit);
-    let in_metres = |(value, unit): (f64, Option<&str>)| unit.or(last).map_or(Some(value), |unit| Some(value * metres(unit)?));
+    let in_metres = |(value, unit): (f64, Option<&str>)| {
+        unit.or(last).map_or(Some(value), |unit| Some(value * metres(unit)?))
+    };
     read.into_iter().map(in_metres).collect()
 }
 

@@ -1,19 +1,27 @@
 //! hysteron: from a self-affine rough surface to the energy that its adhesive contact loses.
 //!
 //! From a spec to the report:
-//! 1. `cli` reads the command line; [`spec`] reads the TOML file into the parameters of cases ([`model`]), with the place of every error.
-//! 2. `campaign` lists the tasks of all stages and their keys, and derives the status of each from the files that are there.
-//! 3. `stages` computes the tasks that are missing, by dependency, in any number of processes; `engines` hands them to Slurm or Snakemake.
-//! 4. Stage generate: a surface from its spectrum and seed, or from a measured file by the readers in `store`, into HDF5.
-//! 5. Stage extract: its asperities and its analytical estimates ([`physics::theory::estimates`]), into Parquet.
-//! 6. Stage cycle: a method ([`physics::cycle::Method`]) loads and unloads the surface and returns a [`physics::cycle::Cycle`] in SI units, which one writer
-//!    puts into tables. Boundary elements also write maps. The estimates of
-//!    the cycle are a further table.
-//! 7. Stage aggregate: `stats` has the statistics over realizations, from the tables of the cycles and the rows of estimates.
+//! 1. `cli` reads the command line; [`spec`] reads the TOML file into the parameters of cases ([`model`]),
+//!    with the place of every error.
+//! 2. `campaign` lists the tasks of all stages and their keys, and derives the status of each from the files
+//!    that are there.
+//! 3. `stages` computes the tasks that are missing, by dependency, in any number of processes; `engines`
+//!    hands them to Slurm or Snakemake.
+//! 4. Stage generate: a surface from its spectrum and seed, or from a measured file by the readers in
+//!    `store`, into HDF5.
+//! 5. Stage extract: its asperities and its analytical estimates ([`physics::theory::estimates`]), into
+//!    Parquet.
+//! 6. Stage cycle: a method
+//!    ([`physics::cycle::Method`]) loads and unloads the surface and returns a [`physics::cycle::Cycle`] in
+//!    SI units, which one writer puts into tables. Boundary elements also write maps. The estimates of the
+//!    cycle are a further table.
+//! 7. Stage aggregate: `stats` has the statistics over realizations, from the tables of the cycles and the
+//!    rows of estimates.
 //! 8. Stage report: `figures` draws the tables, `report` writes the page.
 //!
-//! Dependencies have one direction: `model` has none and [`schema`], which defines every table and column, reads only `model`; `physics` is a crate of its own
-//! that opens no file; `store` computes no result. `stages` alone joins them. `figures` and `report` read only tables.
+//! Dependencies have one direction: `model` has none and [`schema`], which defines every table and column,
+//! reads only `model`; `physics` is a crate of its own that opens no file;
+//! `store` computes no result. `stages` alone joins them. `figures` and `report` read only tables.
 //!
 //! The documentation for users is the [`guide`].
 

@@ -5,5 +5,6 @@ mod case;
 pub use crate::physics::model::*;
 pub use crate::physics::theory::regime::{BRIDGED, FLATTENED, LARGE_AREA, Regime, SEPARATE};
 pub use case::{
-    AsperityOptions, Attraction, CaseParams, ElementOptions, GeneratedSurface, LoadingPath, MeasuredSurface, MethodOptions, SurfaceSource,
+    AsperityOptions, Attraction, CaseParams, ElementOptions, GeneratedSurface, LoadingPath, MeasuredSurface,
+    MethodOptions, SurfaceSource,
 };

@@ -3,7 +3,8 @@
 use std::ffi::OsString;
 use std::path::{Component, Path, PathBuf};
 
-/// The absolute path of a file, without links in its folders and without `.` and `..`. The name of the file remains, also if it is a link.
+/// The absolute path of a file, without links in its folders and without `.` and `..`. The name of the file
+/// remains, also if it is a link.
 #[must_use]
 pub fn whole(path: &Path) -> PathBuf {
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
@@ -45,10 +46,12 @@ fn without_detours(path: &Path) -> PathBuf {
     plain
 }
 
-/// The way from a folder to a file; the absolute path of the file if no relative one leads there (another drive).
+/// The way from a folder to a file; the absolute path of the file if no relative one leads there (another
+/// drive).
 #[must_use]
 pub fn relative(file: &Path, folder: &Path) -> PathBuf {
-    let (file, folder) = (whole(file), self::folder(&std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned())));
+    let (file, folder) =
+        (whole(file), self::folder(&std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned())));
     let shared = file.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
     if shared == 0 {
         return file;

@@ -17,7 +17,8 @@ pub fn in_words(seconds: f64) -> String {
     }
     // Beyond an hour, seconds are no information.
     let unit = if seconds < 3600.0 { 1.0 } else { 60.0 };
-    let rounded = std::time::Duration::try_from_secs_f64((seconds / unit).round() * unit).unwrap_or(std::time::Duration::MAX);
+    let rounded = std::time::Duration::try_from_secs_f64((seconds / unit).round() * unit)
+        .unwrap_or(std::time::Duration::MAX);
     humantime::format_duration(rounded).to_string()
 }
 
@@ -98,7 +99,8 @@ pub fn quoted(text: &str) -> String {
     quoted
 }
 
-/// One word of a command that is meant to be pasted into a POSIX shell; `$'…'` for control characters, as bash, zsh and ksh have it.
+/// One word of a command that is meant to be pasted into a POSIX shell; `$'…'` for control characters, as
+/// bash, zsh and ksh have it.
 #[must_use]
 pub fn shell_quote(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "_@%+=:,./-".contains(c);

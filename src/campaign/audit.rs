@@ -20,7 +20,8 @@ pub struct Audit {
     pub deep: bool,
     /// Files and receipts that are not as they were written: a sentence for each.
     pub faults: Vec<String>,
-    /// Tasks of the spec that have no receipt, although files of theirs or results built on them are there: `cycle H0.80_z8_r00-1a2b3c4d`.
+    /// Tasks of the spec that have no receipt, although files of theirs or results built on them are there:
+    /// `cycle H0.80_z8_r00-1a2b3c4d`.
     pub unreceipted: Vec<String>,
     /// Other files in the program's own folders that no receipt names, by their places.
     pub unnamed: Vec<String>,
@@ -36,7 +37,8 @@ impl Audit {
     /// One of them, as a sentence.
     #[must_use]
     pub fn first_fault(&self) -> Option<String> {
-        let unreceipted = || self.unreceipted.first().map(|task| format!("{task} has results and no receipt"));
+        let unreceipted =
+            || self.unreceipted.first().map(|task| format!("{task} has results and no receipt"));
         let unnamed = || self.unnamed.first().map(|file| format!("no receipt names {file}"));
         self.faults.first().cloned().or_else(unreceipted).or_else(unnamed)
     }
@@ -47,7 +49,8 @@ impl Campaign {
     #[must_use]
     pub fn audit(&self, check: Check) -> Audit {
         let (paths, faults) = self.receipt_paths();
-        let parts: Vec<(Audit, Option<Receipt>)> = paths.par_iter().map(|path| self.audit_one(path, check)).collect();
+        let parts: Vec<(Audit, Option<Receipt>)> =
+            paths.par_iter().map(|path| self.audit_one(path, check)).collect();
         let mut whole = Audit { deep: check == Check::Contents, faults, ..Audit::default() };
         let mut sound = Sound::default();
         for (path, (part, receipt)) in paths.into_iter().zip(parts) {
@@ -93,14 +96,16 @@ impl Campaign {
                 let faults = receipt.files.iter().filter_map(|file| file.fault(&self.dir, check));
                 audit.faults.extend(faults.map(Fault::sentence));
                 audit.file_count = receipt.files.len();
-                audit.size_bytes = receipt.files.iter().fold(0, |sum, file| sum.saturating_add(file.size_bytes));
+                audit.size_bytes =
+                    receipt.files.iter().fold(0, |sum, file| sum.saturating_add(file.size_bytes));
                 sound = Some(*receipt);
             }
         }
         (audit, sound)
     }
 
-    /// Paths of receipts: the spec's, then those of each stage in the order of their names; and folders that could not be listed.
+    /// Paths of receipts: the spec's, then those of each stage in the order of their names; and folders that
+    /// could not be listed.
     fn receipt_paths(&self) -> (Vec<PathBuf>, Vec<String>) {
         let (mut paths, mut faults) = (vec![self.spec_receipt_path()], Vec::new());
         for stage in Stage::ALL {

@@ -8,7 +8,8 @@ use crate::text::counted;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// Tasks that are compared, and finished tasks that are read, at most: a plan of 10⁵ tasks takes about a second.
+/// Tasks that are compared, and finished tasks that are read, at most: a plan of 10⁵ tasks takes about a
+/// second.
 const COMPARED: usize = 5000;
 const READ: usize = 20_000;
 
@@ -34,7 +35,8 @@ pub struct Reasons {
 }
 
 impl Campaign {
-    /// Reasons why tasks of a stage with one task for each surface or cycle are pending, from parameters of finished tasks. Nothing where no task is finished.
+    /// Reasons why tasks of a stage with one task for each surface or cycle are pending, from parameters of
+    /// finished tasks. Nothing where no task is finished.
     #[must_use]
     pub fn reasons(&self, stage: Stage, pending: &[&str]) -> Reasons {
         let finished = std::fs::read_dir(self.receipts_dir(stage)).map_or(0, Iterator::count);
@@ -53,8 +55,9 @@ impl Campaign {
         for id in pending.iter().take(COMPARED) {
             let Some(here) = inputs.get(id) else { continue };
             compared += 1;
-            let is_new =
-                |(name, value): &(&(usize, String), &Value)| known.get(name).is_none_or(|known| !known.contains(&canonical(value)));
+            let is_new = |(name, value): &(&(usize, String), &Value)| {
+                known.get(name).is_none_or(|known| !known.contains(&canonical(value)))
+            };
             let new: Vec<(&(usize, String), &Value)> = here.iter().filter(is_new).collect();
             let (names, values) = if new.is_empty() {
                 combined += 1;
@@ -79,14 +82,17 @@ impl Campaign {
         Reasons { reasons: found.into_iter().map(text).collect(), compared }
     }
 
-    /// Key inputs of the finished tasks of a stage, and whether some are of this spec; the others are read only if none is.
+    /// Key inputs of the finished tasks of a stage, and whether some are of this spec; the others are read
+    /// only if none is.
     fn finished(&self, stage: Stage) -> (Vec<Fields>, bool) {
         let ids: HashSet<&str> = match stage {
             Stage::Cycle => self.cycles.iter().map(|unit| unit.id.as_str()).collect(),
             _ => self.surfaces.iter().map(|unit| unit.id.as_str()).collect(),
         };
         let all = self.receipts(stage);
-        let of = |receipts: &mut dyn Iterator<Item = &Receipt>| receipts.map(|receipt| fields(&receipt.preimages)).collect::<Vec<_>>();
+        let of = |receipts: &mut dyn Iterator<Item = &Receipt>| {
+            receipts.map(|receipt| fields(&receipt.preimages)).collect::<Vec<_>>()
+        };
         let own = of(&mut all.iter().filter(|receipt| ids.contains(receipt.id.as_str())));
         if own.is_empty() { (of(&mut all.iter()), false) } else { (own, true) }
     }
@@ -106,23 +112,42 @@ impl Campaign {
     #[must_use]
     pub fn staleness(&self, stage: Stage, cycles: &[Standing]) -> Option<String> {
         let id = if stage == Stage::Aggregate { STATISTICS } else { super::REPORT_PAGE };
-        let Found::Whole(receipt) = read_receipt(&self.receipt_path(&Unit { stage, id, key: "" })) else { return None };
-        let now =
-            if stage == Stage::Aggregate { self.statistics_preimages(cycles) } else { self.report_preimages(&self.statistics_key(cycles)) };
-        let [then, now] = [&receipt.preimages, &now].map(|inputs| inputs.get(stage.word()).cloned().unwrap_or_default());
+        let Found::Whole(receipt) = read_receipt(&self.receipt_path(&Unit { stage, id, key: "" })) else {
+            return None;
+        };
+        let now = if stage == Stage::Aggregate {
+            self.statistics_preimages(cycles)
+        } else {
+            self.report_preimages(&self.statistics_key(cycles))
+        };
+        let [then, now] =
+            [&receipt.preimages, &now].map(|inputs| inputs.get(stage.word()).cloned().unwrap_or_default());
         let mut changes = Vec::new();
         if then.get("meaning") != now.get("meaning") {
             changes.push("this version of the program computes it differently".to_owned());
         }
-        let read = |of: &Value, name: &str| of.get("reads").and_then(|reads| reads.get(name)).cloned().unwrap_or_default();
+        let read = |of: &Value, name: &str| {
+            of.get("reads").and_then(|reads| reads.get(name)).cloned().unwrap_or_default()
+        };
         if stage == Stage::Aggregate {
             changes.extend(of_lists(&read(&then, "cases"), &read(&now, "cases"), "case", "relabelled"));
             if changes.is_empty() {
-                changes.extend(of_lists(&read(&then, "cycles"), &read(&now, "cycles"), "cycle", "finished, lost or failed since"));
+                changes.extend(of_lists(
+                    &read(&then, "cycles"),
+                    &read(&now, "cycles"),
+                    "cycle",
+                    "finished, lost or failed since",
+                ));
             }
         } else {
-            let named = [("statistics", "the tables over realizations are stale"), ("spec", "the spec was edited")];
-            changes.extend(named.iter().filter(|(name, _)| read(&then, name) != read(&now, name)).map(|(_, text)| (*text).to_owned()));
+            let named =
+                [("statistics", "the tables over realizations are stale"), ("spec", "the spec was edited")];
+            changes.extend(
+                named
+                    .iter()
+                    .filter(|(name, _)| read(&then, name) != read(&now, name))
+                    .map(|(_, text)| (*text).to_owned()),
+            );
         }
         if read(&then, "name") != read(&now, "name") {
             changes.push("the name of the run was changed".to_owned());
@@ -140,7 +165,8 @@ fn of_lists(then: &Value, now: &Value, noun: &str, otherwise: &str) -> Vec<Strin
     let [then, now] = [then, now].map(entries);
     let added = now.keys().filter(|id| !then.contains_key(*id)).count();
     let removed = then.keys().filter(|id| !now.contains_key(*id)).count();
-    let changed = now.iter().filter(|(id, entry)| then.get(*id).is_some_and(|before| before != *entry)).count();
+    let changed =
+        now.iter().filter(|(id, entry)| then.get(*id).is_some_and(|before| before != *entry)).count();
     let text = |(count, what): (usize, &str)| {
         let was = if count == 1 { "was" } else { "were" };
         (count > 0).then(|| format!("{} {was} {what}", counted(count, noun)))
@@ -148,24 +174,32 @@ fn of_lists(then: &Value, now: &Value, noun: &str, otherwise: &str) -> Vec<Strin
     [(added, "added"), (removed, "removed"), (changed, otherwise)].into_iter().filter_map(text).collect()
 }
 
-/// Names of the parameters in which a task differs from the most similar finished one; nothing beyond a number of tasks, each of which takes time.
+/// Names of the parameters in which a task differs from the most similar finished one; nothing beyond a
+/// number of tasks, each of which takes time.
 fn combination(here: &Fields, finished: &[Fields], number: usize) -> Vec<String> {
     if number > COMBINED {
         return Vec::new();
     }
-    let names = |there: &Fields| differences(here, there).into_iter().map(|of| of.field).collect::<BTreeSet<String>>();
+    let names = |there: &Fields| {
+        differences(here, there).into_iter().map(|of| of.field).collect::<BTreeSet<String>>()
+    };
     finished.iter().map(names).min_by_key(BTreeSet::len).unwrap_or_default().into_iter().collect()
 }
 
 /// The value of a field in all finished tasks, if it is one.
 fn only(name: &str, finished: &[Fields]) -> Option<String> {
-    let mut values = finished.iter().flatten().filter(|((_, field), _)| field == name).map(|(_, value)| value.to_string());
+    let mut values =
+        finished.iter().flatten().filter(|((_, field), _)| field == name).map(|(_, value)| value.to_string());
     let first = values.next()?;
     values.all(|value| value == first).then_some(first)
 }
 
 /// A reason in words.
-fn reason(names: &[String], values: &BTreeMap<String, Vec<String>>, before: impl Fn(&String) -> Option<String>) -> String {
+fn reason(
+    names: &[String],
+    values: &BTreeMap<String, Vec<String>>,
+    before: impl Fn(&String) -> Option<String>,
+) -> String {
     if values.is_empty() {
         let names: Vec<&str> = names.iter().map(|name| short(name)).collect();
         return match names.as_slice() {
@@ -174,11 +208,14 @@ fn reason(names: &[String], values: &BTreeMap<String, Vec<String>>, before: impl
         };
     }
     let listed = |(name, values): (&String, &Vec<String>)| {
-        let more = if values.len() > LISTED { format!(", … ({} values)", values.len()) } else { String::new() };
+        let more =
+            if values.len() > LISTED { format!(", … ({} values)", values.len()) } else { String::new() };
         let list = format!("{}{more}", values[..values.len().min(LISTED)].join(", "));
         match name.as_str() {
             "surface.blake3" => "another content of the surface file".to_owned(),
-            meaning if meaning.starts_with("meaning of ") => format!("another version of the stage {}", &meaning["meaning of ".len()..]),
+            meaning if meaning.starts_with("meaning of ") => {
+                format!("another version of the stage {}", &meaning["meaning of ".len()..])
+            }
             _ if values.len() == 1
                 && let Some(before) = before(name) =>
             {

@@ -42,7 +42,8 @@ pub struct Difference {
 /// A field by stage and name.
 type Fields = BTreeMap<(usize, String), Value>;
 
-/// Weight of another realization relative to another parameter: a unit is compared with one of its own realization, if there is any.
+/// Weight of another realization relative to another parameter: a unit is compared with one of its own
+/// realization, if there is any.
 const OTHER_REALIZATION: usize = 100;
 
 impl Campaign {
@@ -73,12 +74,22 @@ impl Campaign {
         }
         // An id that is none may be a path to somewhere else.
         if found.is_empty() && is_id(id) {
-            found.extend([Stage::Generate, Stage::Extract, Stage::Cycle].into_iter().filter_map(|stage| self.orphan(stage, id)));
+            found.extend(
+                [Stage::Generate, Stage::Extract, Stage::Cycle]
+                    .into_iter()
+                    .filter_map(|stage| self.orphan(stage, id)),
+            );
         }
         found
     }
 
-    fn beside_receipts(&self, stage: Stage, id: &str, standing: &Standing, preimages: &Map<String, Value>) -> Explanation {
+    fn beside_receipts(
+        &self,
+        stage: Stage,
+        id: &str,
+        standing: &Standing,
+        preimages: &Map<String, Value>,
+    ) -> Explanation {
         let mut explanation = Explanation {
             stage: stage.word(),
             id: id.to_owned(),
@@ -89,9 +100,11 @@ impl Campaign {
         };
         if !matches!(standing, Standing::Done | Standing::Missing(_) | Standing::Corrupt(_)) {
             let here = fields(preimages);
-            // A planned task differs from others of the same spec on purpose: only results of another spec show a change.
+            // A planned task differs from others of the same spec on purpose: only results of another spec
+            // show a change.
             let own = if *standing == Standing::Planned { self.ids(stage) } else { HashSet::new() };
-            let others = self.receipts(stage).into_iter().filter(|receipt| !own.contains(receipt.id.as_str()));
+            let others =
+                self.receipts(stage).into_iter().filter(|receipt| !own.contains(receipt.id.as_str()));
             let others = others.map(|receipt| (receipt.id.clone(), fields(&receipt.preimages)));
             (explanation.nearest, explanation.differences) = nearest(&here, others);
         }
@@ -109,20 +122,44 @@ impl Campaign {
 
     /// A finished task that the spec does not reference, compared with the most similar task of the spec.
     fn orphan(&self, stage: Stage, id: &str) -> Option<Explanation> {
-        let Found::Whole(receipt) = read_receipt(&self.receipt_path(&Unit { stage, id, key: "" })) else { return None };
+        let Found::Whole(receipt) = read_receipt(&self.receipt_path(&Unit { stage, id, key: "" })) else {
+            return None;
+        };
         let here = fields(&receipt.preimages);
         let (nearest, differences) = if stage == Stage::Cycle {
-            nearest(&here, self.distinct_cycles().iter().map(|unit| (unit.id.clone(), fields(&self.cycle_preimages(unit)))))
+            nearest(
+                &here,
+                self.distinct_cycles()
+                    .iter()
+                    .map(|unit| (unit.id.clone(), fields(&self.cycle_preimages(unit)))),
+            )
         } else {
-            nearest(&here, self.surfaces.iter().map(|unit| (unit.id.clone(), fields(&self.surface_preimages(unit, stage)))))
+            nearest(
+                &here,
+                self.surfaces
+                    .iter()
+                    .map(|unit| (unit.id.clone(), fields(&self.surface_preimages(unit, stage)))),
+            )
         };
-        Some(Explanation { stage: stage.word(), id: id.to_owned(), state: "orphan", why: None, nearest, differences })
+        Some(Explanation {
+            stage: stage.word(),
+            id: id.to_owned(),
+            state: "orphan",
+            why: None,
+            nearest,
+            differences,
+        })
     }
 }
 
 /// The nearest of some units, and what differs.
-fn nearest(here: &Fields, others: impl Iterator<Item = (String, Fields)>) -> (Option<String>, Vec<Difference>) {
-    let far = |difference: &Difference| if matches!(difference.field.as_str(), "realization" | "seed") { OTHER_REALIZATION } else { 1 };
+fn nearest(
+    here: &Fields,
+    others: impl Iterator<Item = (String, Fields)>,
+) -> (Option<String>, Vec<Difference>) {
+    let far = |difference: &Difference| {
+        if matches!(difference.field.as_str(), "realization" | "seed") { OTHER_REALIZATION } else { 1 }
+    };
     let compared = others.map(|(id, there)| (id, differences(here, &there)));
     match compared.min_by_key(|(id, differences)| (differences.iter().map(far).sum::<usize>(), id.clone())) {
         Some((id, differences)) => (Some(id), differences),
@@ -132,7 +169,8 @@ fn nearest(here: &Fields, others: impl Iterator<Item = (String, Fields)>) -> (Op
 
 pub(super) fn differences(here: &Fields, there: &Fields) -> Vec<Difference> {
     let names: BTreeSet<&(usize, String)> = here.keys().chain(there.keys()).collect();
-    let differs = |name: &&&(usize, String)| here.get(**name).map(canonical) != there.get(**name).map(canonical);
+    let differs =
+        |name: &&&(usize, String)| here.get(**name).map(canonical) != there.get(**name).map(canonical);
     names
         .iter()
         .filter(differs)
@@ -145,7 +183,9 @@ pub(super) fn differences(here: &Fields, there: &Fields) -> Vec<Difference> {
 
 /// Two values; of two lists how many entries only one of them has.
 fn apart(here: Option<&Value>, there: Option<&Value>) -> (Option<Value>, Option<Value>) {
-    let (Some(Value::Array(a)), Some(Value::Array(b))) = (here, there) else { return (here.cloned(), there.cloned()) };
+    let (Some(Value::Array(a)), Some(Value::Array(b))) = (here, there) else {
+        return (here.cloned(), there.cloned());
+    };
     if a.len().max(b.len()) < 10 && !a.iter().chain(b).any(Value::is_array) {
         return (here.cloned(), there.cloned());
     }
@@ -167,7 +207,8 @@ pub(super) fn fields(preimages: &Map<String, Value>) -> Fields {
         let meaning = preimage.get("meaning").cloned().unwrap_or(Value::Null);
         all.insert((place, format!("meaning of {}", stage.word())), meaning);
         for (name, value) in preimage.get("reads").and_then(Value::as_object).into_iter().flatten() {
-            let is_key = matches!((stage, name.as_str()), (Stage::Extract, "surface") | (Stage::Cycle, "asperities"));
+            let is_key =
+                matches!((stage, name.as_str()), (Stage::Extract, "surface") | (Stage::Cycle, "asperities"));
             if !is_key {
                 flatten(place, name, value, &mut all);
             }

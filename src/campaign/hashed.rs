@@ -1,7 +1,10 @@
 //! The keys of all units of a spec.
 
 use super::Stage;
-use super::key_inputs::{Canonical, Form, case_members, cycle, extract, generate, of_surface, of_whole_case, read_by_cycle, seed_of};
+use super::key_inputs::{
+    Canonical, Form, case_members, cycle, extract, generate, of_surface, of_whole_case, read_by_cycle,
+    seed_of,
+};
 use crate::model::SurfaceSource;
 use crate::spec::{Case, CaseParams, Spec};
 use rayon::prelude::*;
@@ -39,13 +42,16 @@ impl Hashed {
             .iter()
             .zip(counts)
             .map(|(case, count)| {
-                let kind = *kinds.entry(Canonical::of(&of_surface(spec, &case.params.surface))).or_insert(most.len());
+                let kind = *kinds
+                    .entry(Canonical::of(&of_surface(spec, &case.params.surface)))
+                    .or_insert(most.len());
                 most.resize(most.len().max(kind + 1), (seed_of(spec, &case.params.surface), 0));
                 most[kind].1 = most[kind].1.max(*count);
                 kind
             })
             .collect();
-        let mut shared: Vec<(&Canonical, usize)> = kinds.iter().map(|(inputs, kind)| (inputs, *kind)).collect();
+        let mut shared: Vec<(&Canonical, usize)> =
+            kinds.iter().map(|(inputs, kind)| (inputs, *kind)).collect();
         shared.sort_by_key(|(_, kind)| *kind);
         let surfaces: Vec<Vec<(String, String)>> = shared
             .par_iter()
@@ -85,10 +91,13 @@ fn case_key(spec: &Spec, params: &CaseParams) -> String {
 /// The readable part of ids: of a measured surface the name of its file, without its folder and its ending.
 fn readable(params: &SurfaceSource) -> String {
     let file = match params {
-        SurfaceSource::Generated(surface) => return format!("H{:.2}_z{}", surface.hurst, surface.magnification),
+        SurfaceSource::Generated(surface) => {
+            return format!("H{:.2}_z{}", surface.hurst, surface.magnification);
+        }
         SurfaceSource::Measured(surface) => &surface.file,
     };
-    let stem = Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem =
+        Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     let name: String = stem.chars().map(plain).take(32).collect();
     if name.is_empty() { "surface".to_owned() } else { name }

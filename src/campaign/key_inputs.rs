@@ -1,6 +1,7 @@
 //! Inputs of the keys of all tasks.
 //!
-//! One description of the inputs of each stage makes both forms: canonical JSON text, which is hashed, and the JSON value that receipts show.
+//! One description of the inputs of each stage makes both forms: canonical JSON text, which is hashed, and
+//! the JSON value that receipts show.
 
 use super::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit};
 use crate::keys::{canonical, key_of_text, preimage};
@@ -58,7 +59,8 @@ impl Form for Canonical {
 
     fn object(mut members: Vec<(&str, Self)>) -> Self {
         members.sort_by_key(|(name, _)| *name);
-        let members: Vec<String> = members.into_iter().map(|(name, value)| format!("\"{name}\":{}", value.0)).collect();
+        let members: Vec<String> =
+            members.into_iter().map(|(name, value)| format!("\"{name}\":{}", value.0)).collect();
         Self(format!("{{{}}}", members.join(",")))
     }
 }
@@ -77,7 +79,11 @@ impl Canonical {
 
 /// Inputs of a surface, from the inputs shared by all realizations.
 pub(super) fn generate<F: Form>(surface: &F, seed: u64, realization: u32) -> F {
-    F::object(vec![("surface", surface.clone()), ("seed", F::of(&seed.into())), ("realization", F::of(&realization.into()))])
+    F::object(vec![
+        ("surface", surface.clone()),
+        ("seed", F::of(&seed.into())),
+        ("realization", F::of(&realization.into())),
+    ])
 }
 
 /// Inputs of a table of asperities.
@@ -96,7 +102,8 @@ pub(super) fn cycle<F: Form>(members: &[(&'static str, F)], asperities_key: &str
 }
 
 impl Campaign {
-    /// Inputs of the tables over realizations: the cases with their labels, the cycles with their status and error messages, and the name of the run.
+    /// Inputs of the tables over realizations: the cases with their labels, the cycles with their status and
+    /// error messages, and the name of the run.
     fn statistics_inputs<F: Form>(&self, cycles: &[Standing]) -> F {
         let label = |case: &Case| self.label_of(&case.params.surface);
         let cases = self.cases.iter().map(|unit| match label(&unit.case) {
@@ -109,13 +116,22 @@ impl Campaign {
             F::list(words.map(F::word).collect())
         };
         let cycles = self.cycles.iter().zip(cycles).map(cycle);
-        F::object(vec![("name", F::word(&self.spec.name)), ("cases", F::list(cases.collect())), ("cycles", F::list(cycles.collect()))])
+        F::object(vec![
+            ("name", F::word(&self.spec.name)),
+            ("cases", F::list(cases.collect())),
+            ("cycles", F::list(cycles.collect())),
+        ])
     }
 
-    /// Inputs of the report: the tables, the spec with all defaults as it shows it, and formats that this build does not write.
+    /// Inputs of the report: the tables, the spec with all defaults as it shows it, and formats that this
+    /// build does not write.
     fn report_inputs<F: Form>(&self, statistics_key: &str) -> F {
         let spec = blake3::hash(self.labelled_toml().as_bytes()).to_hex().to_string();
-        let mut inputs = vec![("name", F::word(&self.spec.name)), ("spec", F::word(&spec)), ("statistics", F::word(statistics_key))];
+        let mut inputs = vec![
+            ("name", F::word(&self.spec.name)),
+            ("spec", F::word(&spec)),
+            ("statistics", F::word(statistics_key)),
+        ];
         let left_out = self.spec.figures.left_out();
         if !left_out.is_empty() {
             inputs.push(("figure_formats_left_out", F::word(&left_out.join(" "))));
@@ -139,7 +155,8 @@ impl Campaign {
     #[must_use]
     pub fn surface_preimages(&self, unit: &SurfaceUnit, stage: Stage) -> Map<String, Value> {
         let surface = of_surface(&self.spec, &unit.params);
-        let mut shown = shown(Stage::Generate, &generate(&surface, seed_of(&self.spec, &unit.params), unit.realization));
+        let mut shown =
+            shown(Stage::Generate, &generate(&surface, seed_of(&self.spec, &unit.params), unit.realization));
         if stage >= Stage::Extract {
             shown.extend(self::shown(Stage::Extract, &extract(&unit.key)));
         }
@@ -189,10 +206,12 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
     params
 }
 
-/// Version of the reading of measured surfaces in their keys: order of the points, attributes. Generated surfaces have none.
+/// Version of the reading of measured surfaces in their keys: order of the points, attributes. Generated
+/// surfaces have none.
 const READING_VERSION: u32 = 2;
 
-/// Version of the cycles by boundary elements of one load on a periodic surface, whose results later versions have not changed.
+/// Version of the cycles by boundary elements of one load on a periodic surface, whose results later versions
+/// have not changed.
 pub(crate) const ELEMENTS_VERSION: u32 = 10;
 
 /// Present version of the asperity model.
@@ -209,7 +228,8 @@ const fn present(versions: &[(u32, &str)]) -> u32 {
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     let mut tables = plain(&read_by_cycle(params));
     let mut take = |name: &'static str| (name, tables[name].take());
-    let [material, mut model, elements, mut cycle] = ["material", "model", "boundary_elements", "cycle"].map(&mut take);
+    let [material, mut model, elements, mut cycle] =
+        ["material", "model", "boundary_elements", "cycle"].map(&mut take);
     match &params.method {
         MethodOptions::Asperities(_) => {
             model.1["method_version"] = json!(asperities_version());
@@ -225,7 +245,8 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     }
 }
 
-/// Parameters of a case in its identity. Those of the asperity model are the same as before there was another method.
+/// Parameters of a case in its identity. Those of the asperity model are the same as before there was another
+/// method.
 pub(super) fn of_whole_case(spec: &Spec, params: &CaseParams) -> Value {
     let mut reads = plain(params);
     reads["surface"] = of_surface(spec, &params.surface);
@@ -254,14 +275,18 @@ pub(super) fn seed_of(spec: &Spec, params: &SurfaceSource) -> u64 {
 /// keys, in addition to the versions of the stages.
 const MEASURED_VERSION: u32 = 2;
 
-/// Inputs of a surface in its key: parameters of a generated one, contents of the file and preprocessing of a measured one.
+/// Inputs of a surface in its key: parameters of a generated one, contents of the file and preprocessing of a
+/// measured one.
 pub(super) fn of_surface(spec: &Spec, params: &SurfaceSource) -> Value {
     let surface = match params {
         SurfaceSource::Generated(surface) => return plain(surface),
         SurfaceSource::Measured(surface) => surface,
     };
-    let MeasuredSurface { file, dataset, periodic, pixel_m, size_m, size_y_m, unit, skip_lines, width, .. } = &**surface;
-    let MeasuredSurface { transpose, missing, detrend, filter, points_per_shortest_wavelength, .. } = &**surface;
+    let MeasuredSurface {
+        file, dataset, periodic, pixel_m, size_m, size_y_m, unit, skip_lines, width, ..
+    } = &**surface;
+    let MeasuredSurface { transpose, missing, detrend, filter, points_per_shortest_wavelength, .. } =
+        &**surface;
     let mut reads = json!({
         "reading_version": READING_VERSION, "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic,
         "pixel_m": pixel_m, "size_m": size_m, "size_y_m": size_y_m, "unit": unit, "skip_lines": skip_lines, "width": width,

@@ -27,15 +27,20 @@ const TORN: &str = "a killed run left it";
 const PAST: &str = "its cycle is done";
 
 impl Campaign {
-    /// Files that neither this campaign nor `others` in the same folder name: receipts first, so that removal in this order leaves no receipt
-    /// without its files. Only files that the program wrote are listed, by a receipt or by their marks.
+    /// Files that neither this campaign nor `others` in the same folder name: receipts first, so that removal
+    /// in this order leaves no receipt without its files. Only files that the program wrote are listed, by a
+    /// receipt or by their marks.
     #[must_use]
     pub fn leftovers(&self, others: &[Self]) -> Vec<Leftover> {
         let all = || std::iter::once(self).chain(others);
-        let surfaces: HashSet<&str> = all().flat_map(|campaign| &campaign.surfaces).map(|unit| unit.id.as_str()).collect();
-        let cycles: HashSet<&str> = all().flat_map(|campaign| &campaign.cycles).map(|unit| unit.id.as_str()).collect();
+        let surfaces: HashSet<&str> =
+            all().flat_map(|campaign| &campaign.surfaces).map(|unit| unit.id.as_str()).collect();
+        let cycles: HashSet<&str> =
+            all().flat_map(|campaign| &campaign.cycles).map(|unit| unit.id.as_str()).collect();
         let mut found = Vec::new();
-        for (stage, known) in [(Stage::Cycle, &cycles), (Stage::Extract, &surfaces), (Stage::Generate, &surfaces)] {
+        for (stage, known) in
+            [(Stage::Cycle, &cycles), (Stage::Extract, &surfaces), (Stage::Generate, &surfaces)]
+        {
             unnamed(&self.receipts_dir(stage), Some("json"), known, &mut found);
         }
         for (folder, ending, stage, known) in [
@@ -49,7 +54,9 @@ impl Campaign {
             files.retain(|left| self.is_written(stage, &left.path));
             found.extend(files);
         }
-        if let Found::Whole(receipt) = read_receipt(&self.receipts_dir(Stage::Report).join(format!("{REPORT_PAGE}.json"))) {
+        if let Found::Whole(receipt) =
+            read_receipt(&self.receipts_dir(Stage::Report).join(format!("{REPORT_PAGE}.json")))
+        {
             let drawn = self.drawn();
             let kept: HashSet<PathBuf> = receipt.files.iter().map(|file| self.dir.join(&file.path)).collect();
             let pictures = entries(&self.dir.join("figures")).into_iter().filter(|path| is_picture(path));
@@ -66,7 +73,8 @@ impl Campaign {
             }
         }
         let folders =
-            ["", "surfaces", "asperities", "estimates", "statistics", "schemas", "figures", "receipts"].map(|name| self.dir.join(name));
+            ["", "surfaces", "asperities", "estimates", "statistics", "schemas", "figures", "receipts"]
+                .map(|name| self.dir.join(name));
         let receipts = Stage::ALL.map(|stage| self.receipts_dir(stage));
         let cycles = entries(&self.dir.join("cycles")).into_iter().filter(|path| path.is_dir());
         for folder in folders.into_iter().chain(receipts).chain(cycles) {
@@ -74,18 +82,24 @@ impl Campaign {
             found.extend(torn.map(|path| Leftover { size_bytes: size(&path), path, why: TORN }));
         }
         let mut seen: HashSet<PathBuf> = HashSet::new();
-        found.retain(|left| !left.path.ancestors().skip(1).any(|folder| seen.contains(folder)) && seen.insert(left.path.clone()));
+        found.retain(|left| {
+            !left.path.ancestors().skip(1).any(|folder| seen.contains(folder))
+                && seen.insert(left.path.clone())
+        });
         found
     }
 }
 
 impl Campaign {
-    /// True if a file of a task, or the folder of a cycle, is of the program: a receipt names it, or it has the marks of one.
+    /// True if a file of a task, or the folder of a cycle, is of the program: a receipt names it, or it has
+    /// the marks of one.
     fn is_written(&self, stage: Stage, path: &Path) -> bool {
         if path.is_dir() {
             return !cycle_files(path).is_empty() || entries(path).is_empty();
         }
-        let receipt = path.file_stem().map(|id| self.receipts_dir(stage).join(format!("{}.json", id.to_string_lossy())));
+        let receipt = path
+            .file_stem()
+            .map(|id| self.receipts_dir(stage).join(format!("{}.json", id.to_string_lossy())));
         receipt.is_some_and(|path| matches!(read_receipt(&path), Found::Whole(_))) || is_marked(path)
     }
 }
@@ -100,7 +114,11 @@ impl Leftover {
             for file in cycle_files(&self.path) {
                 removed(std::fs::remove_file(file))?;
             }
-            return if entries(&self.path).is_empty() { removed(std::fs::remove_dir(&self.path)) } else { Ok(()) };
+            return if entries(&self.path).is_empty() {
+                removed(std::fs::remove_dir(&self.path))
+            } else {
+                Ok(())
+            };
         }
         removed(std::fs::remove_file(&self.path))
     }
@@ -115,17 +133,23 @@ fn removed(result: std::io::Result<()>) -> std::io::Result<()> {
 fn cycle_files(folder: &Path) -> Vec<PathBuf> {
     const OTHERS: [&str; 4] = ["maps.h5", "turning.bin", "failed.json", "halfway.bin"];
     let is_own = |path: &PathBuf| {
-        let is_table = |name: &str| TABLES.iter().any(|table| table.file.strip_prefix("cycles/<id>/") == Some(name));
+        let is_table =
+            |name: &str| TABLES.iter().any(|table| table.file.strip_prefix("cycles/<id>/") == Some(name));
         let name = path.file_name().and_then(|name| name.to_str());
         is_abandoned(path) || name.is_some_and(|name| OTHERS.contains(&name) || is_table(name))
     };
     entries(folder).into_iter().filter(|path| !path.is_dir() && is_own(path)).collect()
 }
 
-/// Entries of a folder that have the name of a task, but of none that is known; folders if there is no extension.
+/// Entries of a folder that have the name of a task, but of none that is known; folders if there is no
+/// extension.
 fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found: &mut Vec<Leftover>) {
     for path in entries(folder) {
-        let is_kind = if extension.is_some() { path.extension().and_then(|e| e.to_str()) == extension } else { path.is_dir() };
+        let is_kind = if extension.is_some() {
+            path.extension().and_then(|e| e.to_str()) == extension
+        } else {
+            path.is_dir()
+        };
         let stem = if extension.is_some() { path.file_stem() } else { path.file_name() };
         let Some(id) = stem.and_then(|stem| stem.to_str()) else { continue };
         if is_kind && is_id(id) && !known.contains(id) {
@@ -134,22 +158,30 @@ fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found:
     }
 }
 
-/// True if a file has the name of a figure that the program draws, as `zeta_A.svg` or `closer_loop.png`, in one of its formats.
+/// True if a file has the name of a figure that the program draws, as `zeta_A.svg` or `closer_loop.png`, in
+/// one of its formats.
 fn is_picture(path: &Path) -> bool {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.rsplit_once('_'));
     let drawn = |(sweep, panel): (&str, &str)| {
         matches!((sweep, panel), ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios"))
-            || (!sweep.is_empty() && panel.len() == 1 && panel.bytes().all(|letter| letter.is_ascii_uppercase()))
+            || (!sweep.is_empty()
+                && panel.len() == 1
+                && panel.bytes().all(|letter| letter.is_ascii_uppercase()))
     };
-    path.extension().and_then(|e| e.to_str()).is_some_and(|e| matches!(e, "svg" | "png" | "pdf")) && stem.is_some_and(drawn)
+    path.extension().and_then(|e| e.to_str()).is_some_and(|e| matches!(e, "svg" | "png" | "pdf"))
+        && stem.is_some_and(drawn)
 }
 
 /// True if a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d` or `scan_r00-1a2b3c4d`. No
 /// other name passes: it may belong to a file of the user.
 pub(super) fn is_id(name: &str) -> bool {
     let digits = |text: &str| text.len() >= 2 && text.bytes().all(|b| b.is_ascii_digit());
-    let key = |text: &str| matches!(text.len(), 8 | 16) && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
-    let plain = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'.' | b'_' | b'-'));
+    let key = |text: &str| {
+        matches!(text.len(), 8 | 16) && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'))
+    };
+    let plain = |text: &str| {
+        !text.is_empty() && text.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'.' | b'_' | b'-'))
+    };
     let parts = || {
         let (readable, end) = name.rsplit_once('-')?;
         let (kind, realization) = readable.rsplit_once("_r")?;

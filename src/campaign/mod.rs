@@ -62,7 +62,8 @@ impl Stage {
         }
     }
 
-    /// Version of the stage in its keys. It is raised by hand if the stage writes something else for the same parameters.
+    /// Version of the stage in its keys. It is raised by hand if the stage writes something else for the same
+    /// parameters.
     fn version(self) -> u32 {
         match self {
             Self::Generate => 2,
@@ -109,7 +110,8 @@ pub struct CycleUnit {
 pub struct CaseUnit {
     /// Readable first, then a hash of all its parameters.
     pub id: String,
-    /// Id in the tables of its cycles: that of the case without the errata that only analytical estimates read.
+    /// Id in the tables of its cycles: that of the case without the errata that only analytical estimates
+    /// read.
     pub cycle_case_id: String,
     /// The case.
     pub case: Case,
@@ -187,14 +189,16 @@ impl Campaign {
     #[must_use]
     pub fn with_counts(spec: Spec, dir: PathBuf, counts: Vec<u32>) -> Self {
         let labels = sources::labels(&spec);
-        let mut campaign = Self { dir, cases: Vec::new(), surfaces: Vec::new(), cycles: Vec::new(), labels, counts, spec };
+        let mut campaign =
+            Self { dir, cases: Vec::new(), surfaces: Vec::new(), cycles: Vec::new(), labels, counts, spec };
         let hashed = Hashed::all(&campaign.spec, &campaign.counts);
         // Of each kind of surface, the places of its realizations.
         let mut places: Vec<Vec<usize>> = vec![Vec::new(); hashed.surfaces.len()];
         // Files of different names with the same content have the same cycles: one key, one id.
         let mut ids: HashMap<String, String> = HashMap::new();
         for (number, (case, of)) in campaign.spec.cases.iter().zip(hashed.cases).enumerate() {
-            let [id, cycle_case_id] = [&of.whole, &of.in_cycle].map(|key| format!("{}-{}", of.name, short(key)));
+            let [id, cycle_case_id] =
+                [&of.whole, &of.in_cycle].map(|key| format!("{}-{}", of.name, short(key)));
             campaign.cases.push(CaseUnit { id, cycle_case_id, case: case.clone() });
             let (known, surfaces) = (&mut places[of.surface], &hashed.surfaces[of.surface]);
             for (realization, cycle) in of.cycles.into_iter().enumerate() {
@@ -236,7 +240,8 @@ impl Campaign {
         self.distinct().0.into_iter().map(|place| self.cycles[place].clone()).collect()
     }
 
-    /// The places of the different cycles among [`Self::cycles`]; and for each of these, which of the different ones it is.
+    /// The places of the different cycles among [`Self::cycles`]; and for each of these, which of the
+    /// different ones it is.
     fn distinct(&self) -> (Vec<usize>, Vec<usize>) {
         let mut known: HashMap<&str, usize> = HashMap::with_capacity(self.cycles.len());
         let mut firsts = Vec::new();

@@ -1,4 +1,5 @@
-//! Files that the program wrote, by receipts and marks, so that no command replaces or deletes those of the user.
+//! Files that the program wrote, by receipts and marks, so that no command replaces or deletes those of the
+//! user.
 
 use super::lost::owner;
 use super::{Campaign, REPORT_PAGE, Stage};
@@ -16,8 +17,18 @@ pub const COMPARISON: &str = "comparison";
 /// Word of the stage in the receipt of a comparison.
 pub const COMPARE: &str = "compare";
 /// Folders to which only a run writes.
-const OWN_FOLDERS: [&str; 10] =
-    ["surfaces", "asperities", "estimates", "cycles", "statistics", "schemas", "figures", "receipts", "snakemake", "slurm"];
+const OWN_FOLDERS: [&str; 10] = [
+    "surfaces",
+    "asperities",
+    "estimates",
+    "cycles",
+    "statistics",
+    "schemas",
+    "figures",
+    "receipts",
+    "snakemake",
+    "slurm",
+];
 /// Entry in the receipt of a report: figures of earlier reports.
 const EARLIER: &str = "earlier_figures";
 /// Bytes of a text file that are searched for a mark.
@@ -107,7 +118,10 @@ impl Campaign {
     /// A file at a place where this run writes, and that no run wrote.
     #[must_use]
     pub fn foreign_file(&self) -> Option<PathBuf> {
-        let statistics = TABLES.iter().filter(|table| table.file.starts_with("statistics/")).map(|table| table.file.to_owned());
+        let statistics = TABLES
+            .iter()
+            .filter(|table| table.file.starts_with("statistics/"))
+            .map(|table| table.file.to_owned());
         let schemas = TABLES.iter().map(|table| format!("schemas/{}.json", table.name));
         let others = ["datapackage.json", "report.html"].map(str::to_owned);
         let named = self.named();
@@ -115,7 +129,12 @@ impl Campaign {
             let path = self.dir.join(place);
             path.is_file() && !named.contains(place) && !is_marked(&path)
         };
-        let found = others.into_iter().chain(statistics).chain(schemas).find(is_foreign).map(|place| self.dir.join(place));
+        let found = others
+            .into_iter()
+            .chain(statistics)
+            .chain(schemas)
+            .find(is_foreign)
+            .map(|place| self.dir.join(place));
         found.or_else(|| self.foreign_spec()).or_else(|| {
             let comparison = self.dir.join(crate::schema::COMPARISON.file);
             (!is_run(&self.dir) && comparison.is_file()).then_some(comparison)
@@ -143,22 +162,37 @@ impl Campaign {
         let receipts = self.receipts(Stage::Report).into_iter().filter(|receipt| receipt.id == REPORT_PAGE);
         let mut drawn = BTreeSet::new();
         for receipt in receipts {
-            let earlier = receipt.made.effort.get(EARLIER).and_then(Value::as_array).cloned().unwrap_or_default();
-            let entry = |line: &Value| line.as_str()?.split_once(' ').map(|(hash, place)| (place.to_owned(), hash.to_owned()));
+            let earlier =
+                receipt.made.effort.get(EARLIER).and_then(Value::as_array).cloned().unwrap_or_default();
+            let entry = |line: &Value| {
+                line.as_str()?.split_once(' ').map(|(hash, place)| (place.to_owned(), hash.to_owned()))
+            };
             drawn.extend(earlier.iter().filter_map(entry));
             drawn.extend(receipt.files.into_iter().map(|file| (file.path, file.blake3)));
         }
         drawn
     }
 
-    /// Figures of earlier reports that are there and that a report with these figures does not write, for its receipt.
+    /// Figures of earlier reports that are there and that a report with these figures does not write, for its
+    /// receipt.
     #[must_use]
     pub fn earlier_figures(&self, figures: &[(String, Vec<u8>)]) -> Map<String, Value> {
         let is_earlier = |(place, _): &&(String, String)| {
-            place.starts_with("figures/") && self.dir.join(place).is_file() && figures.iter().all(|(new, _)| new != place)
+            place.starts_with("figures/")
+                && self.dir.join(place).is_file()
+                && figures.iter().all(|(new, _)| new != place)
         };
-        let earlier: Vec<Value> = self.drawn().iter().filter(is_earlier).map(|(place, hash)| json!(format!("{hash} {place}"))).collect();
-        if earlier.is_empty() { Map::new() } else { Map::from_iter([(EARLIER.to_owned(), Value::Array(earlier))]) }
+        let earlier: Vec<Value> = self
+            .drawn()
+            .iter()
+            .filter(is_earlier)
+            .map(|(place, hash)| json!(format!("{hash} {place}")))
+            .collect();
+        if earlier.is_empty() {
+            Map::new()
+        } else {
+            Map::from_iter([(EARLIER.to_owned(), Value::Array(earlier))])
+        }
     }
 
     /// The first figure in the place of one of these that no report wrote, and that differs from it.

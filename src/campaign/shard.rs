@@ -49,7 +49,8 @@ impl FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+        let parts =
+            text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
         match parts.and_then(|(index, count)| Self::of([index, count])) {
             Some(shard) => Ok(shard),
             None => Err(format!("expected K/N, two integers with 0 <= K < N <= {MOST}, for example 0/4")),

@@ -1,6 +1,7 @@
 //! Files of measured surfaces: their labels in tables, and their names in the resolved spec of a run.
 //!
-//! Relative names in `campaign.toml` start at its folder, so that a project can be moved. Its provenance record has the absolute paths, so that the run alone can be moved.
+//! Relative names in `campaign.toml` start at its folder, so that a project can be moved. Its provenance
+//! record has the absolute paths, so that the run alone can be moved.
 
 use super::Campaign;
 use crate::model::SurfaceSource;
@@ -12,10 +13,12 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The member of the provenance record of a resolved spec that has the absolute paths of files by their names in it.
+/// The member of the provenance record of a resolved spec that has the absolute paths of files by their names
+/// in it.
 const PLACES: &str = "files";
 
-/// Labels of the files of a spec: the name, with as many of its folders as distinguish it from the other files.
+/// Labels of the files of a spec: the name, with as many of its folders as distinguish it from the other
+/// files.
 pub(super) fn labels(spec: &Spec) -> BTreeMap<String, String> {
     let parts = |name: &String| -> Vec<String> {
         let part = |part: std::path::Component<'_>| part.as_os_str().to_string_lossy().into_owned();
@@ -24,7 +27,9 @@ pub(super) fn labels(spec: &Spec) -> BTreeMap<String, String> {
     let mut sorted: Vec<(Vec<String>, &String)> = spec.files.keys().map(|name| (parts(name), name)).collect();
     sorted.sort();
     // Of sorted names, read from their ends, a neighbour shares most with each.
-    let shared = |a: &[String], b: &[String]| if a == b { 0 } else { a.iter().zip(b).take_while(|(a, b)| a == b).count() };
+    let shared = |a: &[String], b: &[String]| {
+        if a == b { 0 } else { a.iter().zip(b).take_while(|(a, b)| a == b).count() }
+    };
     let label = |place: usize| {
         let (own, name) = &sorted[place];
         let before = place.checked_sub(1).map_or(0, |before| shared(own, &sorted[before].0));
@@ -48,26 +53,39 @@ impl Campaign {
         self.labels.get(file).cloned().unwrap_or_else(name)
     }
 
-    /// A message with the label of a file in place of its path: the part that begins like an absolute path and ends with the name of the file.
+    /// A message with the label of a file in place of its path: the part that begins like an absolute path
+    /// and ends with the name of the file.
     pub(super) fn with_label(&self, message: &str, surface: &SurfaceSource) -> String {
-        let Some(file) = surface.measured().map(|surface| surface.file.as_str()) else { return message.to_owned() };
-        let Some(name) = Path::new(file).file_name().map(|name| visible(&name.to_string_lossy())) else { return message.to_owned() };
+        let Some(file) = surface.measured().map(|surface| surface.file.as_str()) else {
+            return message.to_owned();
+        };
+        let Some(name) = Path::new(file).file_name().map(|name| visible(&name.to_string_lossy())) else {
+            return message.to_owned();
+        };
         let label = self.file_label(file);
         let plain = message.replace(&shown(&whole(Path::new(file))), &label);
-        let found = plain.find(&format!("/{name}")).and_then(|at| Some((plain[..at + 1].find(" /")? + 1, at + 1 + name.len())));
+        let found = plain
+            .find(&format!("/{name}"))
+            .and_then(|at| Some((plain[..at + 1].find(" /")? + 1, at + 1 + name.len())));
         found.map_or(plain.clone(), |(start, end)| format!("{}{label}{}", &plain[..start], &plain[end..]))
     }
 
-    /// The resolved spec as text, as the report shows it: files have their labels, since their paths differ between machines.
+    /// The resolved spec as text, as the report shows it: files have their labels, since their paths differ
+    /// between machines.
     #[must_use]
     pub fn labelled_toml(&self) -> String {
         self.spec.with_file_names(&self.labels).to_toml()
     }
 
-    /// Names of the files in `campaign.toml`: absolute if the spec has them so, or else from the output folder.
+    /// Names of the files in `campaign.toml`: absolute if the spec has them so, or else from the output
+    /// folder.
     fn resolved_names(&self) -> BTreeMap<String, String> {
         let relative = |name: &String| {
-            let name = if self.spec.absolute_files.contains(name) { None } else { Some(relative(Path::new(name), &self.dir)) };
+            let name = if self.spec.absolute_files.contains(name) {
+                None
+            } else {
+                Some(relative(Path::new(name), &self.dir))
+            };
             name.and_then(|path| path.to_str().map(str::to_owned))
         };
         self.spec.files.keys().filter_map(|name| Some((name.clone(), relative(name)?))).collect()
@@ -79,7 +97,8 @@ impl Campaign {
         self.spec.with_file_names(&self.resolved_names()).to_toml()
     }
 
-    /// Members of the provenance record of `campaign.toml`: the absolute paths of files with relative names, if there are any.
+    /// Members of the provenance record of `campaign.toml`: the absolute paths of files with relative names,
+    /// if there are any.
     #[must_use]
     pub fn resolved_record(&self) -> Map<String, Value> {
         let (names, known) = (self.resolved_names(), recorded(&self.dir));
@@ -88,14 +107,20 @@ impl Campaign {
             (name.clone(), lost.unwrap_or_else(|| whole(Path::new(found))).to_string_lossy().into())
         };
         let places: Map<String, Value> = names.iter().map(place).collect();
-        if places.is_empty() { Map::new() } else { Map::from_iter([(PLACES.to_owned(), Value::Object(places))]) }
+        if places.is_empty() {
+            Map::new()
+        } else {
+            Map::from_iter([(PLACES.to_owned(), Value::Object(places))])
+        }
     }
 
     /// True if the provenance record of `campaign.toml` has the places of all files that are there.
     #[must_use]
     pub fn has_recorded_files(&self) -> bool {
         let known = recorded(&self.dir);
-        self.resolved_names().iter().all(|(found, name)| !Path::new(found).exists() || known.get(name) == Some(&whole(Path::new(found))))
+        self.resolved_names().iter().all(|(found, name)| {
+            !Path::new(found).exists() || known.get(name) == Some(&whole(Path::new(found)))
+        })
     }
 
     /// Absolute paths at which the file of a measured surface can be expected, the best one first.
@@ -116,22 +141,26 @@ impl Campaign {
     }
 }
 
-/// Absolute paths of files by their names in the `campaign.toml` of a folder, as its provenance record has them.
+/// Absolute paths of files by their names in the `campaign.toml` of a folder, as its provenance record has
+/// them.
 fn recorded(dir: &Path) -> BTreeMap<String, PathBuf> {
-    let Found::Whole(receipt) = read_receipt(&dir.join("receipts").join("campaign.json")) else { return BTreeMap::new() };
+    let Found::Whole(receipt) = read_receipt(&dir.join("receipts").join("campaign.json")) else {
+        return BTreeMap::new();
+    };
     let places = receipt.preimages.get(PLACES).and_then(Value::as_object).cloned().unwrap_or_default();
     places.into_iter().filter_map(|(name, place)| Some((name, PathBuf::from(place.as_str()?)))).collect()
 }
 
-/// The spec that was read from the `campaign.toml` of a folder. A file that is not where its relative name leads has its recorded place, if it is there: the folder
-/// was moved.
+/// The spec that was read from the `campaign.toml` of a folder. A file that is not where its relative name
+/// leads has its recorded place, if it is there: the folder was moved.
 #[must_use]
 pub fn with_recorded_files(spec: Spec, dir: &Path) -> Spec {
     let lost: Vec<&String> = spec.files.keys().filter(|name| !Path::new(name).exists()).collect();
     if lost.is_empty() {
         return spec;
     }
-    let places: BTreeMap<PathBuf, PathBuf> = recorded(dir).into_iter().map(|(name, place)| (whole(&dir.join(name)), place)).collect();
+    let places: BTreeMap<PathBuf, PathBuf> =
+        recorded(dir).into_iter().map(|(name, place)| (whole(&dir.join(name)), place)).collect();
     let found = |name: &&String| {
         let place = places.get(&whole(Path::new(name))).filter(|place| place.exists())?;
         Some(((*name).clone(), place.to_str()?.to_owned()))

@@ -30,7 +30,8 @@ pub enum Standing {
 
 impl Standing {
     /// Every word of [`Self::word`], in the order in which they are counted.
-    pub const WORDS: [&'static str; 9] = ["done", "running", "waiting", "planned", "interrupted", "failed", "stale", "missing", "corrupt"];
+    pub const WORDS: [&'static str; 9] =
+        ["done", "running", "waiting", "planned", "interrupted", "failed", "stale", "missing", "corrupt"];
 
     /// The word in the answers of the program.
     #[must_use]
@@ -82,10 +83,12 @@ impl Campaign {
             Found::Nothing => Standing::Planned,
             Found::Damaged(why) => Standing::Corrupt(format!("{}: {why}", name())),
             Found::Whole(receipt) if receipt.key != unit.key => Standing::Stale,
-            Found::Whole(receipt) => self.faults(&receipt, check).map_or(Standing::Done, |fault| match fault {
-                Fault::Missing(why) => Standing::Missing(why),
-                Fault::Changed(why) => Standing::Corrupt(why),
-            }),
+            Found::Whole(receipt) => {
+                self.faults(&receipt, check).map_or(Standing::Done, |fault| match fault {
+                    Fault::Missing(why) => Standing::Missing(why),
+                    Fault::Changed(why) => Standing::Corrupt(why),
+                })
+            }
         }
     }
 
@@ -128,7 +131,8 @@ impl Campaign {
         self.failure_record(unit)?.get("error").and_then(Value::as_str).map(str::to_owned)
     }
 
-    /// Error message of a failed cycle as tables hold it: the problem without the help, and without paths of the machine.
+    /// Error message of a failed cycle as tables hold it: the problem without the help, and without paths of
+    /// the machine.
     #[must_use]
     pub fn failure_in_tables(&self, unit: &CycleUnit, standing: &Standing) -> Option<String> {
         self.failure_texts(unit, standing).map(|[problem, _]| problem)
@@ -139,7 +143,8 @@ impl Campaign {
     pub fn failure_texts(&self, unit: &CycleUnit, standing: &Standing) -> Option<[String; 2]> {
         let Standing::Failed(why) = standing else { return None };
         let (problem, help) = why.split_once("\nhelp: ").unwrap_or((why, ""));
-        let inside = |text: &str| text.replace(&format!("{}{}", self.dir.display(), std::path::MAIN_SEPARATOR), "");
+        let inside =
+            |text: &str| text.replace(&format!("{}{}", self.dir.display(), std::path::MAIN_SEPARATOR), "");
         Some([problem, help].map(|text| self.with_label(&inside(text), &self.surfaces[unit.surface].params)))
     }
 
@@ -147,7 +152,9 @@ impl Campaign {
     #[must_use]
     pub fn not_reached(&self, unit: &CycleUnit) -> Vec<(f64, String)> {
         let path = self.not_reached_path(unit);
-        let Some(text) = path.is_file().then(|| std::fs::read_to_string(path).ok()).flatten() else { return Vec::new() };
+        let Some(text) = path.is_file().then(|| std::fs::read_to_string(path).ok()).flatten() else {
+            return Vec::new();
+        };
         let record: Value = serde_json::from_str(&text).unwrap_or_default();
         if record["key"] != unit.key.as_str() {
             return Vec::new();
@@ -156,12 +163,14 @@ impl Campaign {
         record["loads"].as_array().into_iter().flatten().filter_map(load).collect()
     }
 
-    /// Loads of a finished cycle that have no result in one sentence, as tables hold it: without the help of the errors.
+    /// Loads of a finished cycle that have no result in one sentence, as tables hold it: without the help of
+    /// the errors.
     #[must_use]
     pub fn not_reached_in_tables(&self, unit: &CycleUnit) -> Option<String> {
         let unreached = self.not_reached(unit);
         let (_, error) = unreached.first()?;
-        let same: Vec<String> = unreached.iter().filter(|(_, other)| other == error).map(|(load, _)| load.to_string()).collect();
+        let same: Vec<String> =
+            unreached.iter().filter(|(_, other)| other == error).map(|(load, _)| load.to_string()).collect();
         let others = unreached.len() - same.len();
         let more = if others > 0 { format!("; {others} more in not_reached.json") } else { String::new() };
         let problem = error.split_once("\nhelp:").map_or(error.as_str(), |(problem, _)| problem);
@@ -190,7 +199,11 @@ impl Campaign {
         let text = path.is_file().then(|| std::fs::read_to_string(path).ok())??;
         let record: Value = serde_json::from_str(&text).ok()?;
         // A folder stood in the place of a file, and is gone.
-        if record.get("in_the_way").and_then(Value::as_str).is_some_and(|place| !self.dir.join(place).is_dir()) {
+        if record
+            .get("in_the_way")
+            .and_then(Value::as_str)
+            .is_some_and(|place| !self.dir.join(place).is_dir())
+        {
             return None;
         }
         (record.get("key")?.as_str()? == unit.key).then_some(record)
@@ -205,19 +218,29 @@ impl Campaign {
     /// Status of each distinct cycle, with its place, and status of all cycles.
     fn distinct_standings(&self, check: Check) -> (Vec<(usize, Standing)>, Vec<Standing>) {
         let begun = self.begun(Stage::Cycle);
-        let standing = |place: usize| if begun { self.cycle_standing(&self.cycles[place], check) } else { Standing::Planned };
+        let standing = |place: usize| {
+            if begun { self.cycle_standing(&self.cycles[place], check) } else { Standing::Planned }
+        };
         let (firsts, which) = self.distinct();
-        let found: Vec<(usize, Standing)> = firsts.into_par_iter().map(|place| (place, standing(place))).collect();
+        let found: Vec<(usize, Standing)> =
+            firsts.into_par_iter().map(|place| (place, standing(place))).collect();
         let all = which.iter().map(|k| found[*k].1.clone()).collect();
         (found, all)
     }
 
     /// Marks surfaces and tables of asperities as failed where a cycle records the failure.
-    fn mark_failed(&self, cycles: &[(usize, Standing)], surfaces: &mut [Standing], asperities: &mut [Standing]) {
-        for (place, standing) in cycles.iter().filter(|(_, standing)| matches!(standing, Standing::Failed(_))) {
+    fn mark_failed(
+        &self,
+        cycles: &[(usize, Standing)],
+        surfaces: &mut [Standing],
+        asperities: &mut [Standing],
+    ) {
+        for (place, standing) in cycles.iter().filter(|(_, standing)| matches!(standing, Standing::Failed(_)))
+        {
             let cycle = &self.cycles[*place];
             let at = self.failed_at(cycle);
-            for (stage, standings) in [(Stage::Generate, &mut *surfaces), (Stage::Extract, &mut *asperities)] {
+            for (stage, standings) in [(Stage::Generate, &mut *surfaces), (Stage::Extract, &mut *asperities)]
+            {
                 if at.is_some_and(|at| at <= stage) && standings[cycle.surface] == Standing::Planned {
                     standings[cycle.surface] = standing.clone();
                 }
@@ -239,7 +262,8 @@ impl Campaign {
         let (cycles, standings) = self.distinct_standings(check);
         self.mark_failed(&cycles, &mut surfaces, &mut asperities);
         let statistics_key = self.statistics_key(&standings);
-        let statistics = self.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics_key }, check);
+        let statistics =
+            self.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics_key }, check);
         let report_key = self.report_key(&statistics_key);
         let report = self.standing(&Unit { stage: Stage::Report, id: REPORT_PAGE, key: &report_key }, check);
         Survey { surfaces, asperities, cycles, statistics, report }

@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 
 /// Labels at the beginning of a line, with their attributes (ECMA-48).
-const LABELS: [(&str, &str); 4] = [("error:", "1;31"), ("warning:", "1;33"), ("warning[", "1;33"), ("help:", "1;36")];
+const LABELS: [(&str, &str); 4] =
+    [("error:", "1;31"), ("warning:", "1;33"), ("warning[", "1;33"), ("help:", "1;36")];
 
 /// A text whose labels are coloured, if it goes to a terminal and `NO_COLOR` is not set.
 pub(super) fn painted(text: Cow<'_, str>, is_terminal: bool) -> Cow<'_, str> {

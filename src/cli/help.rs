@@ -1,4 +1,5 @@
-//! Help texts that are not attached to one command or option. Lines have at most 80 columns: clap does not wrap them.
+//! Help texts that are not attached to one command or option. Lines have at most 80 columns: clap does not
+//! wrap them.
 
 use super::Verb;
 use clap::{Command, Subcommand as _};

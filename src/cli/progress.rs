@@ -21,7 +21,8 @@ const EVERY: Duration = Duration::from_secs(30);
 /// Environment variable: seconds between two progress lines.
 const PERIOD: &str = "HYSTERON_PROGRESS_SECONDS";
 
-/// The stage that is running: its bar, the parts that are done, the parts to do, and the finished tasks of all.
+/// The stage that is running: its bar, the parts that are done, the parts to do, and the finished tasks of
+/// all.
 struct Now {
     bar: ProgressBar,
     parts: f64,
@@ -47,7 +48,10 @@ pub(super) struct Teller {
 
 impl Teller {
     pub(super) fn new(talk: TalkArguments) -> Self {
-        let seconds = std::env::var(PERIOD).ok().and_then(|text| text.trim().parse().ok()).filter(|seconds: &f64| *seconds >= 0.0);
+        let seconds = std::env::var(PERIOD)
+            .ok()
+            .and_then(|text| text.trim().parse().ok())
+            .filter(|seconds: &f64| *seconds >= 0.0);
         let every = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()).unwrap_or(EVERY);
         Self {
             terminal: std::io::stderr().is_terminal(),
@@ -85,11 +89,13 @@ impl Teller {
     /// Numbers of running cycles with and without a checkpoint in an output folder.
     pub(super) fn checkpointed(&self, dir: &Path) -> [usize; 2] {
         let running = locked(&self.running);
-        let with = running.iter().filter(|id| dir.join("cycles").join(id).join("halfway.bin").is_file()).count();
+        let with =
+            running.iter().filter(|id| dir.join("cycles").join(id).join("halfway.bin").is_file()).count();
         [with, running.len() - with]
     }
 
-    /// True if there are lines for tasks and progress: always with --verbose; otherwise where there is no bar, unless --quiet.
+    /// True if there are lines for tasks and progress: always with --verbose; otherwise where there is no
+    /// bar, unless --quiet.
     fn has_lines(&self) -> bool {
         self.talk.verbose || !self.terminal && !self.talk.quiet
     }
@@ -102,7 +108,11 @@ impl Teller {
     /// A line above the bar.
     fn above(&self, now: &mut Now, text: &str) {
         now.line_at = Instant::now();
-        let text = if self.talk.verbose { format!("{text} ({})", duration(self.elapsed())) } else { text.to_owned() };
+        let text = if self.talk.verbose {
+            format!("{text} ({})", duration(self.elapsed()))
+        } else {
+            text.to_owned()
+        };
         now.bar.suspend(|| self.line(&text));
     }
 }
@@ -125,7 +135,10 @@ fn remaining(state: &ProgressState, out: &mut dyn std::fmt::Write) {
 
 /// The style of a bar.
 fn style() -> Option<ProgressStyle> {
-    let style = ProgressStyle::with_template("{prefix:9} [{bar:24}] {msg} {percent:>3} %, {elapsed}, {remaining} left").ok()?;
+    let style = ProgressStyle::with_template(
+        "{prefix:9} [{bar:24}] {msg} {percent:>3} %, {elapsed}, {remaining} left",
+    )
+    .ok()?;
     Some(style.with_key("remaining", remaining).progress_chars("=> "))
 }
 
@@ -133,7 +146,8 @@ impl Watch for Teller {
     fn begin(&self, stage: Stage, done: usize, all: usize) {
         let left = all - done;
         let has_bar = self.terminal && !self.talk.quiet && left > 0;
-        let bar = if has_bar { ProgressBar::new((left as f64 * PARTS) as u64) } else { ProgressBar::hidden() };
+        let bar =
+            if has_bar { ProgressBar::new((left as f64 * PARTS) as u64) } else { ProgressBar::hidden() };
         if let Some(style) = style() {
             bar.set_style(style);
         }
@@ -157,7 +171,12 @@ impl Watch for Teller {
                 let share = 100.0 * now.parts / (now.left.max(1) as f64 * PARTS);
                 let time = duration(self.elapsed());
                 now.line_at = Instant::now();
-                self.line(&format!("{}: {}/{}, {share:.0} % of the pending tasks after {time}", stage.word(), now.units, now.all));
+                self.line(&format!(
+                    "{}: {}/{}, {share:.0} % of the pending tasks after {time}",
+                    stage.word(),
+                    now.units,
+                    now.all
+                ));
             }
         });
     }

@@ -14,7 +14,8 @@ pub const GUIDE: &str = "src/guide";
 #[must_use]
 pub fn generated() -> Vec<(PathBuf, String)> {
     let schemas = Path::new(schema::DIRECTORY);
-    let mut files: Vec<_> = schema::files().into_iter().map(|file| (schemas.join(file.name), file.content)).collect();
+    let mut files: Vec<_> =
+        schema::files().into_iter().map(|file| (schemas.join(file.name), file.content)).collect();
     files.push((schemas.join(spec::SCHEMA_FILE), spec::json_schema()));
     files.push((Path::new(GUIDE).join("reference_spec.md"), spec::reference()));
     files.push((Path::new(GUIDE).join("reference_cli.md"), page()));
@@ -65,12 +66,14 @@ fn section(command: &Command, parent: &str, page: &mut String) {
     for part in about.split("\n\n") {
         *page += &format!("{}\n\n", sentence(part));
     }
-    let aliases: Vec<String> = command.get_visible_aliases().map(|alias| format!("`{parent} {alias}`")).collect();
+    let aliases: Vec<String> =
+        command.get_visible_aliases().map(|alias| format!("`{parent} {alias}`")).collect();
     if !aliases.is_empty() {
         *page += &format!("Alias: {}\n\n", aliases.join(", "));
     }
     *page += &format!("```text\n{}\n```\n", usage.strip_prefix("Usage: ").unwrap_or(&usage).trim_end());
-    let arguments: Vec<String> = command.get_arguments().filter(|argument| is_own(argument)).map(entry).collect();
+    let arguments: Vec<String> =
+        command.get_arguments().filter(|argument| is_own(argument)).map(entry).collect();
     if !arguments.is_empty() {
         *page += &format!("\n{}", arguments.concat());
     }
@@ -90,19 +93,27 @@ fn is_own(argument: &Arg) -> bool {
 /// An argument as an entry of a list: spelling, meaning, values, default.
 fn entry(argument: &Arg) -> String {
     let takes_value = argument.is_positional() || argument.get_action().takes_values();
-    let names = argument.get_value_names().unwrap_or_default().iter().map(|name| format!("<{name}>")).collect::<Vec<_>>().join(" ");
+    let names = argument
+        .get_value_names()
+        .unwrap_or_default()
+        .iter()
+        .map(|name| format!("<{name}>"))
+        .collect::<Vec<_>>()
+        .join(" ");
     let short = argument.get_short().map(|short| format!("-{short}"));
     let long = argument.get_long().map(|long| format!("--{long}"));
     let spelling = [short, long].into_iter().flatten().collect::<Vec<_>>().join(", ");
     let spelling = [spelling, if takes_value { names } else { String::new() }].join(" ");
     let help = argument.get_long_help().or(argument.get_help()).map(ToString::to_string).unwrap_or_default();
     let mut text = format!("`{}`: {}", spelling.trim(), sentence(&help));
-    let values: Vec<String> = argument.get_possible_values().iter().map(|value| format!("`{}`", value.get_name())).collect();
+    let values: Vec<String> =
+        argument.get_possible_values().iter().map(|value| format!("`{}`", value.get_name())).collect();
     // A help text that lists the values itself hides them.
     if takes_value && !values.is_empty() && !argument.is_hide_possible_values_set() {
         text += &format!(" Values: {}.", values.join(", "));
     }
-    let defaults: Vec<String> = argument.get_default_values().iter().map(|value| format!("`{}`", value.to_string_lossy())).collect();
+    let defaults: Vec<String> =
+        argument.get_default_values().iter().map(|value| format!("`{}`", value.to_string_lossy())).collect();
     if takes_value && !defaults.is_empty() {
         text += &format!(" Default: {}.", defaults.join(", "));
     }

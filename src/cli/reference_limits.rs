@@ -43,7 +43,10 @@ pub(super) fn page() -> String {
     page.extend(CAUTIONS.iter().map(row));
     page.push('\n');
     for caution in CAUTIONS {
-        page += &paragraph("- ", &format!("`{}`, {}: {} {}", caution.code, caution.label, caution.consequence, caution.action));
+        page += &paragraph(
+            "- ",
+            &format!("`{}`, {}: {} {}", caution.code, caution.label, caution.consequence, caution.action),
+        );
         page.push('\n');
     }
     page.extend(constants().iter().map(section));
@@ -70,9 +73,18 @@ fn row(caution: &Caution) -> String {
 
 /// The constants of a module: a table, then their effects.
 fn section(of: &Constants) -> String {
-    let mut text = format!("\n## {}\n\nModule `{}`.\n\n| quantity | value | unit | file |\n|---|---|---|---|\n", of.subject, of.module);
+    let mut text = format!(
+        "\n## {}\n\nModule `{}`.\n\n| quantity | value | unit | file |\n|---|---|---|---|\n",
+        of.subject, of.module
+    );
     for constant in of.rows {
-        text += &format!("| {} | {} | {} | {} |\n", constant.name, constant.text(), constant.unit, file(constant));
+        text += &format!(
+            "| {} | {} | {} | {} |\n",
+            constant.name,
+            constant.text(),
+            constant.unit,
+            file(constant)
+        );
     }
     text.push('\n');
     for constant in of.rows {

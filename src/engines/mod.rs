@@ -1,6 +1,7 @@
 //! Scripts and descriptions of a campaign for other programs, in readable text.
 //!
-//! The program is no scheduler. The one seam is a shard: some surfaces and all that is done with them, which may be run at any time, anywhere, twice at once.
+//! The program is no scheduler. The one seam is a shard: some surfaces and all that is done with them, which
+//! may be run at any time, anywhere, twice at once.
 
 pub mod ro_crate;
 pub mod slurm;
@@ -14,7 +15,13 @@ pub const CONSTANTS: Constants = Constants {
     subject: "Clusters",
     module: "engines",
     rows: &[
-        Constant::new("parts of a run, default", &[MOST_SHARDS as f64], "", "Maximum. Otherwise one for each surface.", ""),
+        Constant::new(
+            "parts of a run, default",
+            &[MOST_SHARDS as f64],
+            "",
+            "Maximum. Otherwise one for each surface.",
+            "",
+        ),
         Constant::new(
             "signal before a time limit",
             &[slurm::LEAD_S as f64],
@@ -22,7 +29,13 @@ pub const CONSTANTS: Constants = Constants {
             "A quarter of a shorter limit than four times this.",
             "slurm",
         ),
-        Constant::new("early signal", &[slurm::EARLY_S as f64], "s", "Slurm may signal earlier by this.", "slurm"),
+        Constant::new(
+            "early signal",
+            &[slurm::EARLY_S as f64],
+            "s",
+            "Slurm may signal earlier by this.",
+            "slurm",
+        ),
     ],
 };
 
@@ -35,7 +48,8 @@ pub fn usual_shards(campaign: &Campaign) -> usize {
     campaign.surfaces.len().clamp(1, MOST_SHARDS)
 }
 
-/// The shards that have units of a stage which are not done; failed cases are not open. Stages beyond the cycles have no shards.
+/// The shards that have units of a stage which are not done; failed cases are not open. Stages beyond the
+/// cycles have no shards.
 #[must_use]
 pub fn open_shards(campaign: &Campaign, survey: &Survey, stage: Stage, count: usize) -> Vec<usize> {
     let mut open = vec![false; count];
@@ -45,9 +59,16 @@ pub fn open_shards(campaign: &Campaign, survey: &Survey, stage: Stage, count: us
         }
     };
     match stage {
-        Stage::Generate => survey.surfaces.iter().enumerate().for_each(|(surface, standing)| enter(surface, standing)),
-        Stage::Extract => survey.asperities.iter().enumerate().for_each(|(surface, standing)| enter(surface, standing)),
-        Stage::Cycle => survey.cycles.iter().for_each(|(place, standing)| enter(campaign.cycles[*place].surface, standing)),
+        Stage::Generate => {
+            survey.surfaces.iter().enumerate().for_each(|(surface, standing)| enter(surface, standing));
+        }
+        Stage::Extract => {
+            survey.asperities.iter().enumerate().for_each(|(surface, standing)| enter(surface, standing));
+        }
+        Stage::Cycle => survey
+            .cycles
+            .iter()
+            .for_each(|(place, standing)| enter(campaign.cycles[*place].surface, standing)),
         Stage::Aggregate | Stage::Report => {}
     }
     (0..count).filter(|shard| open[*shard]).collect()

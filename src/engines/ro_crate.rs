@@ -25,8 +25,15 @@ const TYPES: [(&str, &str); 6] = [
 /// If it is neither: problem and help.
 pub fn licence(text: &str) -> Result<String, String> {
     let lower = text.to_ascii_lowercase();
-    let strange = |c: char| c.is_whitespace() || c.is_control() || matches!(c, '<' | '>' | '"' | '\\' | '^' | '`' | '{' | '|' | '}');
-    if ["https://", "http://"].iter().any(|scheme| lower.strip_prefix(scheme).is_some_and(|rest| rest.starts_with(char::is_alphanumeric))) {
+    let strange = |c: char| {
+        c.is_whitespace()
+            || c.is_control()
+            || matches!(c, '<' | '>' | '"' | '\\' | '^' | '`' | '{' | '|' | '}')
+    };
+    if ["https://", "http://"]
+        .iter()
+        .any(|scheme| lower.strip_prefix(scheme).is_some_and(|rest| rest.starts_with(char::is_alphanumeric)))
+    {
         if !text.contains(strange) {
             return Ok(text.to_owned());
         }
@@ -37,7 +44,8 @@ pub fn licence(text: &str) -> Result<String, String> {
         return Ok(format!("https://spdx.org/licenses/{text}"));
     }
     Err(format!(
-        "--license {text:?} is no address and no SPDX identifier\nhelp: write an http(s) address, or an identifier such as CC-BY-4.0"
+        "--license {text:?} is no address and no SPDX identifier\nhelp: write an http(s) address, or an \
+         identifier such as CC-BY-4.0"
     ))
 }
 
@@ -63,8 +71,11 @@ pub struct Publication<'a> {
 pub fn metadata(campaign: &Campaign, receipts: &[Receipt], publication: &Publication<'_>) -> String {
     let mut made = Made::new();
     for receipt in receipts {
-        let version =
-            receipt.made.commit.as_ref().map_or_else(|| receipt.made.version.clone(), |at| format!("{} ({at})", receipt.made.version));
+        let version = receipt
+            .made
+            .commit
+            .as_ref()
+            .map_or_else(|| receipt.made.version.clone(), |at| format!("{} ({at})", receipt.made.version));
         made.entry((version, receipt.stage.clone())).or_default().push(receipt);
     }
     let files: Vec<Value> = receipts.iter().flat_map(|receipt| &receipt.files).map(file).collect();
@@ -119,7 +130,10 @@ fn organization(publisher: &str) -> Value {
 
 /// A file of a receipt.
 fn file(file: &Kept) -> Value {
-    let kind = TYPES.iter().find(|(ending, _)| file.path.ends_with(ending)).map_or("application/octet-stream", |(_, kind)| kind);
+    let kind = TYPES
+        .iter()
+        .find(|(ending, _)| file.path.ends_with(ending))
+        .map_or("application/octet-stream", |(_, kind)| kind);
     json!({
         "@id": file.path,
         "@type": "File",
@@ -172,7 +186,8 @@ fn programs(made: &Made<'_>) -> Vec<Value> {
 
 /// Creation of the files of a stage by a version of the program.
 fn action(((version, stage), of): (&(String, String), &Vec<&Receipt>)) -> Value {
-    let results = of.iter().flat_map(|receipt| &receipt.files).map(|file| json!({ "@id": file.path })).collect();
+    let results =
+        of.iter().flat_map(|receipt| &receipt.files).map(|file| json!({ "@id": file.path })).collect();
     let begun = of.iter().map(|receipt| receipt.made.began.as_str()).min().unwrap_or_default();
     json!({
         "@id": format!("#{stage}-{}", program(version).trim_start_matches('#')),
@@ -192,7 +207,8 @@ fn one_or_list(mut values: Vec<Value>) -> Value {
 
 /// The identity of a version of the program within the crate.
 fn program(version: &str) -> String {
-    let plain: String = version.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
+    let plain: String =
+        version.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
     format!("#hysteron-{}", plain.trim_end_matches('-'))
 }
 

@@ -1,7 +1,9 @@
 //! Slurm: a job array for each stage, whose tasks are shards.
 //!
-//! Task k of a stage waits for task k of the stage before it (`aftercorr`), and is cancelled where that has failed (`--kill-on-invalid-dep`), so that nothing
-//! waits for ever. Aggregation waits until all cycles have ended, however they ended, and checks for itself what there is.
+//! Task k of a stage waits for task k of the stage before it
+//! (`aftercorr`), and is cancelled where that has failed (`--kill-on-invalid-dep`), so that nothing waits for
+//! ever. Aggregation waits until all cycles have ended, however they ended, and checks for itself what there
+//! is.
 
 use crate::campaign::{Campaign, Stage};
 use crate::text::shell_path;
@@ -132,10 +134,14 @@ pub fn folder(campaign: &Campaign) -> PathBuf {
 pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
     let (name, word) = (&campaign.spec.name, stage.word());
     let [program, dir, spec] =
-        [order.program.clone(), campaign.dir.clone(), campaign.dir.join("campaign.toml")].map(|path| shell_path(&path));
+        [order.program.clone(), campaign.dir.clone(), campaign.dir.join("campaign.toml")]
+            .map(|path| shell_path(&path));
     let log = folder(campaign).join("log");
     let array = stage <= Stage::Cycle;
-    let mut text = format!("#!/bin/bash\n# {word} of the campaign {name}. `hysteron submit` wrote this file, and writes it anew.\n");
+    let mut text = format!(
+        "#!/bin/bash\n# {word} of the campaign {name}. `hysteron submit` wrote this file, and writes it \
+         anew.\n"
+    );
     let mut option = |what: &str| text.push_str(&format!("#SBATCH {what}\n"));
     option(&format!("--job-name={name}-{word}"));
     option(&format!("--output=\"{}/{word}-{}.log\"", log.display(), if array { "%A_%a" } else { "%j" }));
@@ -156,16 +162,20 @@ pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
          work() {{\n  \"$@\" &\n  child=$! code=129\n  [ \"$stop\" = 0 ] || kill -TERM \"$child\"\n  \
          while [ \"$code\" -gt 128 ] && kill -0 \"$child\" 2>/dev/null; do wait \"$child\"; code=$?; done\n  child=\n}}\n\
          # A task that has written nothing since its start would be interrupted at the same point again.\n\
-         progress() {{ [ -n \"$(find {records} {cycles} -newer \"$began\" \\( -name '*.json' -o -name halfway.bin \\) -print -quit 2>/dev/null)\" ]; }}\n"
+         progress() {{ [ -n \"$(find {records} {cycles} -newer \"$began\" \\( -name '*.json' -o -name \
+              halfway.bin \\) -print -quit 2>/dev/null)\" ]; }}\n"
     ));
     if array {
         let (shards, cpus) = (order.shards, order.cpus);
         text.push_str(&format!(
-            "work {program} {word} {spec} --out {dir} --shard \"$((HYSTERON_FIRST + SLURM_ARRAY_TASK_ID))/{shards}\" --jobs {cpus}\n"
+            "work {program} {word} {spec} --out {dir} --shard \"$((HYSTERON_FIRST + \
+             SLURM_ARRAY_TASK_ID))/{shards}\" --jobs {cpus}\n"
         ));
     } else {
         text.push_str(&format!("work {program} aggregate {spec} --out {dir} --jobs 1 --quiet\n"));
-        text.push_str(&format!("[ \"$code\" != 0 ] || [ \"$again\" = 1 ] || work {program} report {spec} --out {dir} --jobs 1\n"));
+        text.push_str(&format!(
+            "[ \"$code\" != 0 ] || [ \"$again\" = 1 ] || work {program} report {spec} --out {dir} --jobs 1\n"
+        ));
     }
     text.push_str(
         "if [ \"$again\" = 1 ] && [ \"$code\" -gt 128 ]; then\n  if progress; then\n    scontrol requeue \"$this\"\n  else\n    \
@@ -176,20 +186,30 @@ pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
     text
 }
 
-/// The jobs of an order, in the order of submission: arrays split where they are longer than the site allows, then the one that aggregates.
+/// The jobs of an order, in the order of submission: arrays split where they are longer than the site allows,
+/// then the one that aggregates.
 #[must_use]
 pub fn jobs(order: &Order) -> Vec<Job> {
     let mut jobs: Vec<Job> = Vec::new();
-    let shards: BTreeSet<usize> = order.waiting.iter().flat_map(|(_, shards)| shards.iter().copied()).collect();
+    let shards: BTreeSet<usize> =
+        order.waiting.iter().flat_map(|(_, shards)| shards.iter().copied()).collect();
     let firsts: BTreeSet<usize> = shards.iter().map(|shard| shard / order.most * order.most).collect();
     let mut last = Vec::new();
     for first in firsts {
         let inside = |shard: &&usize| (first..first + order.most).contains(*shard);
-        // Every stage of these has the same tasks, so that they correspond; one that has nothing to do ends at once.
+        // Every stage of these has the same tasks, so that they correspond; one that has nothing to do ends
+        // at once.
         let tasks: Vec<usize> = shards.iter().filter(inside).map(|shard| shard - first).collect();
         let mut before = None;
-        for (stage, _) in order.waiting.iter().filter(|(_, waiting)| waiting.iter().any(|shard| inside(&shard))) {
-            jobs.push(Job { stage: *stage, first, tasks: tasks.clone(), after: before.into_iter().collect() });
+        for (stage, _) in
+            order.waiting.iter().filter(|(_, waiting)| waiting.iter().any(|shard| inside(&shard)))
+        {
+            jobs.push(Job {
+                stage: *stage,
+                first,
+                tasks: tasks.clone(),
+                after: before.into_iter().collect(),
+            });
             before = Some(jobs.len() - 1);
         }
         last.extend(before);
@@ -217,8 +237,11 @@ impl Job {
             any.append(&mut after);
         }
         let kinds = [("aftercorr", after), ("afterany", any)];
-        let dependencies: Vec<String> =
-            kinds.iter().filter(|(_, jobs)| !jobs.is_empty()).map(|(kind, jobs)| format!("{kind}:{}", jobs.join(":"))).collect();
+        let dependencies: Vec<String> = kinds
+            .iter()
+            .filter(|(_, jobs)| !jobs.is_empty())
+            .map(|(kind, jobs)| format!("{kind}:{}", jobs.join(":")))
+            .collect();
         if !dependencies.is_empty() {
             arguments.push(format!("--dependency={}", dependencies.join(",")));
             arguments.push("--kill-on-invalid-dep=yes".to_owned());
@@ -237,7 +260,8 @@ fn ranges(numbers: &[usize]) -> String {
             _ => parts.push((number, number)),
         }
     }
-    let words: Vec<String> = parts.iter().map(|(a, b)| if a == b { a.to_string() } else { format!("{a}-{b}") }).collect();
+    let words: Vec<String> =
+        parts.iter().map(|(a, b)| if a == b { a.to_string() } else { format!("{a}-{b}") }).collect();
     words.join(",")
 }
 
@@ -259,7 +283,8 @@ pub struct Queue {
 }
 
 /// Arguments of `squeue`: job, task, state and number of restarts of each task, ended ones included.
-pub const QUERY: [&str; 7] = ["--me", "-h", "-r", "-t", "all", "-O", "ArrayJobID:24,ArrayTaskID:24,State:24,RestartCnt:24"];
+pub const QUERY: [&str; 7] =
+    ["--me", "-h", "-r", "-t", "all", "-O", "ArrayJobID:24,ArrayTaskID:24,State:24,RestartCnt:24"];
 
 impl Queue {
     /// Reads the answer of `squeue` to [`QUERY`].
@@ -268,7 +293,9 @@ impl Queue {
         let mut queue = Self::default();
         for line in answer.lines() {
             let mut words = line.split_whitespace();
-            let (Some(job), Some(task), Some(state)) = (words.next(), words.next(), words.next()) else { continue };
+            let (Some(job), Some(task), Some(state)) = (words.next(), words.next(), words.next()) else {
+                continue;
+            };
             let Some(sent) = sent.iter().find(|sent| job.parse() == Ok(sent.job)) else { continue };
             let task = task.parse::<usize>().ok();
             if !matches!(

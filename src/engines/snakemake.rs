@@ -1,4 +1,5 @@
-//! Snakemake: a Snakefile with one rule for each stage, whose jobs are shards. Its executors reach the schedulers that this program does not.
+//! Snakemake: a Snakefile with one rule for each stage, whose jobs are shards. Its executors reach the
+//! schedulers that this program does not.
 
 use crate::campaign::Campaign;
 use serde_json::json;

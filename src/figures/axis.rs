@@ -53,22 +53,41 @@ impl Axis {
         let (low, high) = extent(values);
         let (low, high) = (low.max(f64::MIN_POSITIVE).log2(), high.max(f64::MIN_POSITIVE).log2());
         let step = ((high - low) / 6.0).ceil().max(1.0);
-        Self { label: label.to_owned(), range: (low - 0.5, high + 0.5), step, exponent: 0, scale: Scale::Doublings }
+        Self {
+            label: label.to_owned(),
+            range: (low - 0.5, high + 0.5),
+            step,
+            exponent: 0,
+            scale: Scale::Doublings,
+        }
     }
 
-    /// An axis on which a factor of ten is always the same distance, with a tick at each power of ten; of values that are not positive it holds none.
+    /// An axis on which a factor of ten is always the same distance, with a tick at each power of ten; of
+    /// values that are not positive it holds none.
     pub fn of_decades(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let (low, high) = extent(values.into_iter().filter(|value| *value > 0.0));
         let (low, high) = (low.max(f64::MIN_POSITIVE).log10(), high.max(f64::MIN_POSITIVE).log10());
         let air = 0.06 * (high - low).max(1.0);
         let step = ((high - low) / 6.0).ceil().max(1.0);
-        Self { label: label.to_owned(), range: (low - air, high + air), step, exponent: 0, scale: Scale::Decades }
+        Self {
+            label: label.to_owned(),
+            range: (low - air, high + air),
+            step,
+            exponent: 0,
+            scale: Scale::Decades,
+        }
     }
 
     /// An axis of places with names instead of numbers; values on it are places.
     pub fn of_words(label: &str, words: Vec<String>) -> Self {
         let last = words.len().saturating_sub(1) as f64;
-        Self { label: label.to_owned(), range: (-0.5, last + 0.5), step: 1.0, exponent: 0, scale: Scale::Words(words) }
+        Self {
+            label: label.to_owned(),
+            range: (-0.5, last + 0.5),
+            step: 1.0,
+            exponent: 0,
+            scale: Scale::Words(words),
+        }
     }
 
     /// This axis with room for the key: a share of its length, added at its upper end.
@@ -143,7 +162,9 @@ impl Axis {
 fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let finite = values.into_iter().filter(|value| value.is_finite());
     finite
-        .fold(None, |seen: Option<(f64, f64)>, value| Some(seen.map_or((value, value), |(low, high)| (low.min(value), high.max(value)))))
+        .fold(None, |seen: Option<(f64, f64)>, value| {
+            Some(seen.map_or((value, value), |(low, high)| (low.min(value), high.max(value))))
+        })
         .unwrap_or((0.0, 1.0))
 }
 
@@ -161,5 +182,9 @@ fn exponent_of(greatest: f64) -> i32 {
 /// Smallest of 1, 2, 2.5, 5 times a power of ten that is not below a length.
 fn round_step(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
-    [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= length * (1.0 - 1e-9)).unwrap_or(power)
+    [1.0, 2.0, 2.5, 5.0, 10.0]
+        .into_iter()
+        .map(|factor| factor * power)
+        .find(|step| *step >= length * (1.0 - 1e-9))
+        .unwrap_or(power)
 }

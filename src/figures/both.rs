@@ -84,7 +84,8 @@ fn cells(of: &LoopMaps) -> String {
                     i += 1;
                 }
                 if i > from {
-                    let (x, y, w) = (from as f64 * size, SIDE - (j + 1) as f64 * size, (i - from) as f64 * size);
+                    let (x, y, w) =
+                        (from as f64 * size, SIDE - (j + 1) as f64 * size, (i - from) as f64 * size);
                     let _ = write!(svg, "M{x:.2} {y:.2}h{w:.2}v{size:.2}h-{w:.2}z");
                 }
                 i += 1;
@@ -95,7 +96,8 @@ fn cells(of: &LoopMaps) -> String {
     svg
 }
 
-/// Ratios of the asperity model to boundary elements over `U_el/Δγ`, a point for each row of the table `methods`; nothing where that has one value only.
+/// Ratios of the asperity model to boundary elements over
+/// `U_el/Δγ`, a point for each row of the table `methods`; nothing where that has one value only.
 ///
 /// # Errors
 /// If the table lacks a column.
@@ -109,17 +111,20 @@ pub fn method_ratios(methods: &Frame) -> Result<Option<Panel>, FigureError> {
     let mut curves = Vec::new();
     for (name, column, hue, stroke) in columns {
         let ratios = methods.f64_or_null(&format!("{column}_ratio"))?;
-        let points = x.iter().zip(ratios).filter_map(|(x, ratio)| x.zip(ratio.filter(|ratio| *ratio > 0.0))).collect();
+        let points =
+            x.iter().zip(ratios).filter_map(|(x, ratio)| x.zip(ratio.filter(|ratio| *ratio > 0.0))).collect();
         curves.push(curve((name, ""), points, shade(hue, 0, 1), stroke));
     }
     let points = || curves.iter().flat_map(|curve| curve.points.iter().copied());
-    let (low, high) = points().fold((f64::INFINITY, 0.0_f64), |(low, high), point| (low.min(point.0), high.max(point.0)));
+    let (low, high) =
+        points().fold((f64::INFINITY, 0.0_f64), |(low, high), point| (low.min(point.0), high.max(point.0)));
     if low * 1.5 > high {
         return Ok(None);
     }
     let axes = (
         Axis::of_decades("U_{el}/Δγ", points().map(|point| point.0)),
-        Axis::of_decades("asperity model/boundary elements", points().map(|point| point.1)).with_headroom(0.06),
+        Axis::of_decades("asperity model/boundary elements", points().map(|point| point.1))
+            .with_headroom(0.06),
     );
     let key = columns.map(|(name, _, hue, stroke)| (name, hue, stroke));
     let drawn = plot("ratio of the methods on each surface".to_owned(), axes.0, axes.1, curves, &key);

@@ -21,7 +21,10 @@ pub(super) fn of_sweep(letter: char, sweep: &Sweep, surfaces: &str, plot: &XyPlo
     if matches!(letter, 'A' | 'C') {
         parts.push("loading dashed, unloading solid".to_owned());
         if surfaces.starts_with("mean") {
-            parts.push("below zero load, averaged at equal fractions of the pull-off force of each surface".to_owned());
+            parts.push(
+                "below zero load, averaged at equal fractions of the pull-off force of each surface"
+                    .to_owned(),
+            );
         }
     }
     let curves = || plot.curves.iter();
@@ -47,11 +50,15 @@ fn cases(sweep: &Sweep) -> String {
     for parameter in &sweep.differing {
         let mut places: Vec<usize> = (0..sweep.members.len()).collect();
         match &parameter.values {
-            Values::Numbers(numbers) => places.sort_by(|a, b| numbers[*a].unwrap_or(f64::NAN).total_cmp(&numbers[*b].unwrap_or(f64::NAN))),
+            Values::Numbers(numbers) => places
+                .sort_by(|a, b| numbers[*a].unwrap_or(f64::NAN).total_cmp(&numbers[*b].unwrap_or(f64::NAN))),
             Values::Words(words) => places.sort_by(|a, b| words[*a].cmp(&words[*b])),
         }
-        let mut texts: Vec<&str> =
-            places.into_iter().filter(|place| !parameter.is_absent(*place)).map(|place| parameter.text(place)).collect();
+        let mut texts: Vec<&str> = places
+            .into_iter()
+            .filter(|place| !parameter.is_absent(*place))
+            .map(|place| parameter.text(place))
+            .collect();
         texts.dedup();
         parts.push(match texts[..] {
             [first, .., last] if texts.len() > MOST_VALUES => {
@@ -67,19 +74,26 @@ fn cases(sweep: &Sweep) -> String {
 pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
     let text = match name {
         "loop" => {
-            format!("Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and back, for {}", of.parameters)
+            format!(
+                "Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and \
+                 back, for {}",
+                of.parameters
+            )
         }
         "events" => {
-            "Energy dissipated by each event against mean penetration; events of negative dissipated energy are not drawn on the logarithmic axis".to_owned()
+            "Energy dissipated by each event against mean penetration; events of negative dissipated energy \
+             are not drawn on the logarithmic axis"
+                .to_owned()
         }
         "avalanches" => "Number of avalanches with at least s events".to_owned(),
         "radii" => "Cumulative distribution of the contact radius over the side L of the square".to_owned(),
-        "loads" => {
-            "Cumulative distribution of the load of each contact spot over the pull-off force of its asperity; positive in compression"
-                .to_owned()
-        }
+        "loads" => "Cumulative distribution of the load of each contact spot over the pull-off force of its \
+             asperity; positive in compression"
+            .to_owned(),
         "spectrum" => spectrum(of),
-        _ => "Probability density of the summit curvatures, with Nayak's distribution for the realised spectral moments".to_owned(),
+        _ => "Probability density of the summit curvatures, with Nayak's distribution for the realised \
+             spectral moments"
+            .to_owned(),
     };
     format!("{text}.{}", data(name))
 }

@@ -31,7 +31,10 @@ const BARS: usize = 40;
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn closer(of: &Closer<'_>, heights_m: ArrayView2<'_, f64>) -> Result<(Vec<Panel>, Option<Drawing>), FigureError> {
+pub fn closer(
+    of: &Closer<'_>,
+    heights_m: ArrayView2<'_, f64>,
+) -> Result<(Vec<Panel>, Option<Drawing>), FigureError> {
     let kept = of.landmarks()?;
     let branches = branches(of, step_of(&kept, Landmark::Turning))?;
     let panel = |name: &str, plot: XyPlot| panel(name, of_cycle(name, of), plot);
@@ -58,12 +61,30 @@ type End = (Landmark, i64, [u8; 3], Stroke);
 fn panel(name: &str, caption: String, plot: XyPlot) -> Panel {
     let stem = format!("closer_{name}");
     let plot = XyPlot { stem: stem.clone(), ..plot };
-    Panel { stem, name: name.to_owned(), svg: described(&plot_xy(&plot), &caption), caption, cases: Vec::new(), plot }
+    Panel {
+        stem,
+        name: name.to_owned(),
+        svg: described(&plot_xy(&plot), &caption),
+        caption,
+        cases: Vec::new(),
+        plot,
+    }
 }
 
-pub(super) fn plot(title: String, x: Axis, y: Axis, curves: Vec<Curve>, key: &[(&str, [u8; 3], Stroke)]) -> XyPlot {
-    let marked = |colour: &str, stroke: Stroke| curves.iter().any(|of| of.colour == colour && of.stroke == stroke && of.is_marked());
-    let key = key.iter().map(|(text, hue, stroke)| entry(text, *hue, Some(*stroke), marked(&shade(*hue, 0, 1), *stroke))).collect();
+pub(super) fn plot(
+    title: String,
+    x: Axis,
+    y: Axis,
+    curves: Vec<Curve>,
+    key: &[(&str, [u8; 3], Stroke)],
+) -> XyPlot {
+    let marked = |colour: &str, stroke: Stroke| {
+        curves.iter().any(|of| of.colour == colour && of.stroke == stroke && of.is_marked())
+    };
+    let key = key
+        .iter()
+        .map(|(text, hue, stroke)| entry(text, *hue, Some(*stroke), marked(&shade(*hue, 0, 1), *stroke)))
+        .collect();
     XyPlot { stem: String::new(), letter: ' ', title, x, y, curves, key, notes: Vec::new(), margin: 0.0 }
 }
 
@@ -72,12 +93,14 @@ type OfBranch = (&'static str, [u8; 3], Vec<usize>);
 
 /// Events of the loop, by branch.
 fn branches(of: &Closer<'_>, turning: Option<i64>) -> Result<[OfBranch; 2], FigureError> {
-    let (branches, max_loads, steps) = (of.events.text("branch")?, of.events.f64_or_null("max_load")?, of.events.i64("step")?);
+    let (branches, max_loads, steps) =
+        (of.events.text("branch")?, of.events.f64_or_null("max_load")?, of.events.i64("step")?);
     // Loading continues beyond a load reversal that is not the last one.
     let turning = turning.unwrap_or(i64::MAX);
     let all = || 0..of.events.row_count();
     let loading = all().filter(|k| branches[*k] == "loading" && steps[*k] <= turning).collect();
-    let unloading = all().filter(|k| branches[*k] == "unloading" && max_loads[*k] == Some(of.max_load)).collect();
+    let unloading =
+        all().filter(|k| branches[*k] == "unloading" && max_loads[*k] == Some(of.max_load)).collect();
     Ok([("loading", OTHER, loading), ("unloading", RESULT, unloading)])
 }
 
@@ -91,8 +114,9 @@ pub(super) fn of_loop(steps: &Frame, max_load: f64) -> Result<XyPlot, FigureErro
     let mut unloading = points(&|k| branches[k] == "unloading" && max_loads[k] == Some(max_load));
     // The first step of unloading by boundary elements comes after the reversal.
     let reversal = steps.f64_or_null("reversal_load")?.iter().position(|load| *load == Some(max_load));
-    if let Some(point) =
-        reversal.map(|k| (approaches[k], loads[k])).filter(|point| unloading.first().is_some_and(|first| first.0 < point.0))
+    if let Some(point) = reversal
+        .map(|k| (approaches[k], loads[k]))
+        .filter(|point| unloading.first().is_some_and(|first| first.0 < point.0))
     {
         unloading.insert(0, point);
     }
@@ -108,7 +132,13 @@ pub(super) fn of_loop(steps: &Frame, max_load: f64) -> Result<XyPlot, FigureErro
         curve(("loading", ""), loading.clone(), shade(RESULT, 0, 1), Stroke::Dashed),
         curve(("unloading", ""), unloading.clone(), shade(RESULT, 0, 1), Stroke::Solid),
     ];
-    Ok(plot(String::new(), x, y, curves, &[("loading", RESULT, Stroke::Dashed), ("unloading", RESULT, Stroke::Solid)]))
+    Ok(plot(
+        String::new(),
+        x,
+        y,
+        curves,
+        &[("loading", RESULT, Stroke::Dashed), ("unloading", RESULT, Stroke::Solid)],
+    ))
 }
 
 /// Energy that each event lost, over the approach.
@@ -116,8 +146,11 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
     let (approaches, energies) = (of.events.f64("approach_m")?, of.events.f64("energy_lost_j")?);
     let (mut curves, mut all, mut drawn) = (Vec::new(), 0, 0);
     for (name, hue, rows) in branches {
-        let mut lost: Vec<(f64, f64)> =
-            rows.iter().map(|k| (approaches[*k] / of.rms_height_m, energies[*k] / of.energy_j)).filter(|point| point.1 > 0.0).collect();
+        let mut lost: Vec<(f64, f64)> = rows
+            .iter()
+            .map(|k| (approaches[*k] / of.rms_height_m, energies[*k] / of.energy_j))
+            .filter(|point| point.1 > 0.0)
+            .collect();
         all += lost.len();
         lost.sort_by(|u, v| v.1.total_cmp(&u.1).then(u.0.total_cmp(&v.0)));
         lost.truncate(MOST_POINTS);
@@ -128,10 +161,21 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
         Axis::holding("Δ/h_{rms}", points().map(|point| point.0), false),
-        Axis::of_decades("dissipated energy/(E^{*}A_{0}h_{rms})", points().map(|point| point.1)).with_headroom(0.12),
+        Axis::of_decades("dissipated energy/(E^{*}A_{0}h_{rms})", points().map(|point| point.1))
+            .with_headroom(0.12),
     );
-    let title = if drawn < all { format!("the largest {drawn} of {all} dissipative events") } else { counted(all, "dissipative event") };
-    Ok(plot(title, x, y, curves, &[("loading", OTHER, Stroke::Diamonds), ("unloading", RESULT, Stroke::Points)]))
+    let title = if drawn < all {
+        format!("the largest {drawn} of {all} dissipative events")
+    } else {
+        counted(all, "dissipative event")
+    };
+    Ok(plot(
+        title,
+        x,
+        y,
+        curves,
+        &[("loading", OTHER, Stroke::Diamonds), ("unloading", RESULT, Stroke::Points)],
+    ))
 }
 
 /// Number of avalanches with at least as many events.
@@ -147,7 +191,8 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
         let mut sizes: Vec<usize> = sizes.into_values().collect();
         sizes.sort_unstable();
         total += sizes.len();
-        let mut points: Vec<(f64, f64)> = sizes.iter().enumerate().map(|(k, size)| (*size as f64, (sizes.len() - k) as f64)).collect();
+        let mut points: Vec<(f64, f64)> =
+            sizes.iter().enumerate().map(|(k, size)| (*size as f64, (sizes.len() - k) as f64)).collect();
         points.dedup_by_key(|point| point.0);
         let stroke = if *hue == OTHER { Stroke::Dashed } else { Stroke::Solid };
         curves.push(Curve { marked: true, ..curve((name, ""), points, shade(*hue, 0, 1), stroke) });
@@ -157,15 +202,29 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
         Axis::of_decades("events per avalanche, s", points().map(|point| point.0)),
         Axis::of_decades("avalanches with at least s events", points().map(|point| point.1)),
     );
-    Ok(plot(counted(total, "avalanche"), x, y, curves, &[("loading", OTHER, Stroke::Dashed), ("unloading", RESULT, Stroke::Solid)]))
+    Ok(plot(
+        counted(total, "avalanche"),
+        x,
+        y,
+        curves,
+        &[("loading", OTHER, Stroke::Dashed), ("unloading", RESULT, Stroke::Solid)],
+    ))
 }
 
 /// Cumulative distribution of a value of each contact spot at the load reversal and at the pull-off.
-fn distribution(of: &Closer<'_>, ends: &[End], label: &str, value: impl Fn(usize) -> Option<f64>) -> Result<XyPlot, FigureError> {
+fn distribution(
+    of: &Closer<'_>,
+    ends: &[End],
+    label: &str,
+    value: impl Fn(usize) -> Option<f64>,
+) -> Result<XyPlot, FigureError> {
     let (steps, states) = (of.contacts.i64("step")?, of.contacts.text("state")?);
     let (mut curves, mut key) = (Vec::new(), Vec::new());
     for (landmark, step, hue, stroke) in ends.iter().copied() {
-        let mut values: Vec<f64> = (0..steps.len()).filter(|k| steps[*k] == step && states[*k] == "contact").filter_map(&value).collect();
+        let mut values: Vec<f64> = (0..steps.len())
+            .filter(|k| steps[*k] == step && states[*k] == "contact")
+            .filter_map(&value)
+            .collect();
         values.sort_by(f64::total_cmp);
         let count = values.len();
         curves.push(curve((landmark.words(), ""), cumulative(&values), shade(hue, 0, 1), stroke));
@@ -176,7 +235,8 @@ fn distribution(of: &Closer<'_>, ends: &[End], label: &str, value: impl Fn(usize
         Axis::holding(label, points().map(|point| point.0), false),
         Axis::holding("cumulative fraction of contact spots", [0.0, 1.0], true).with_headroom(0.16),
     );
-    let key: Vec<(&str, [u8; 3], Stroke)> = key.iter().map(|(text, hue, stroke)| (text.as_str(), *hue, *stroke)).collect();
+    let key: Vec<(&str, [u8; 3], Stroke)> =
+        key.iter().map(|(text, hue, stroke)| (text.as_str(), *hue, *stroke)).collect();
     Ok(plot(String::new(), x, y, curves, &key))
 }
 
@@ -185,7 +245,11 @@ fn cumulative(ordered: &[f64]) -> Vec<(f64, f64)> {
     let count = ordered.len();
     if count <= MOST_RANKS {
         let share = |rank: usize| rank as f64 / count as f64;
-        return ordered.iter().enumerate().flat_map(|(rank, value)| [(*value, share(rank)), (*value, share(rank + 1))]).collect();
+        return ordered
+            .iter()
+            .enumerate()
+            .flat_map(|(rank, value)| [(*value, share(rank)), (*value, share(rank + 1))])
+            .collect();
     }
     let rank = |k: usize| (2 * k + 1) * count / (2 * MOST_RANKS);
     (0..MOST_RANKS).map(rank).map(|at| (ordered[at], (at as f64 + 0.5) / count as f64)).collect()
@@ -197,12 +261,18 @@ fn radii(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
 }
 
 fn loads(of: &Closer<'_>, ends: &[End]) -> Result<XyPlot, FigureError> {
-    let (loads, asperities, radii) = (of.contacts.f64("load_n")?, of.contacts.i64("asperity_id")?, of.asperities.f64("radius_m")?);
+    let (loads, asperities, radii) =
+        (of.contacts.f64("load_n")?, of.contacts.i64("asperity_id")?, of.asperities.f64("radius_m")?);
     if of.pull_off_n_m == 0.0 {
         return distribution(of, ends, "normal load of a contact spot [N]", |k| Some(loads[k]));
     }
     // Merged contacts have numbers beyond those of the asperities, and no pull-off force of one asperity.
-    let own = |k: usize| usize::try_from(asperities[k]).ok().and_then(|id| radii.get(id)).map(|radius| of.pull_off_n_m * radius);
+    let own = |k: usize| {
+        usize::try_from(asperities[k])
+            .ok()
+            .and_then(|id| radii.get(id))
+            .map(|radius| of.pull_off_n_m * radius)
+    };
     distribution(of, ends, "normal load/pull-off force of the asperity", |k| own(k).map(|own| loads[k] / own))
 }
 
@@ -229,7 +299,8 @@ fn spectrum(of: &Closer<'_>) -> XyPlot {
 
 /// Curvatures of the summits over Nayak's density.
 fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
-    let curvatures: Vec<f64> = of.asperities.f64("curvature_1_m")?.iter().map(|k| k / of.curvature_1_m).collect();
+    let curvatures: Vec<f64> =
+        of.asperities.f64("curvature_1_m")?.iter().map(|k| k / of.curvature_1_m).collect();
     let most = curvatures.iter().copied().fold(0.0, f64::max).max(1.0);
     let width = most / BARS as f64;
     let mut counts = [0usize; BARS];
@@ -238,7 +309,10 @@ fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
     }
     let unit = 1.0 / (width * curvatures.len().max(1) as f64);
     // Its outline: each bar from its left to its right end.
-    let bars = counts.iter().enumerate().flat_map(|(k, count)| [k, k + 1].map(|at| (at as f64 * width, *count as f64 * unit)));
+    let bars = counts
+        .iter()
+        .enumerate()
+        .flat_map(|(k, count)| [k, k + 1].map(|at| (at as f64 * width, *count as f64 * unit)));
     let curves = vec![
         curve(("nayak", ""), of.nayak.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
         curve(("realised", ""), bars.collect(), shade(RESULT, 0, 1), Stroke::Solid),
@@ -250,5 +324,11 @@ fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
     );
     let [found, nayak] = of.densities_1_m2.map(|density| density * of.length_m * of.length_m);
     let title = format!("{}; Nayak: {nayak:.0}", counted(found.round() as usize, "summit"));
-    Ok(plot(title, x, y, curves, &[("this surface", RESULT, Stroke::Solid), ("Nayak, Eq A2", THEORY, Stroke::Dashed)]))
+    Ok(plot(
+        title,
+        x,
+        y,
+        curves,
+        &[("this surface", RESULT, Stroke::Solid), ("Nayak, Eq A2", THEORY, Stroke::Dashed)],
+    ))
 }

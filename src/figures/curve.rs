@@ -53,7 +53,8 @@ pub struct Curve {
     pub of: String,
     /// Points, in the order in which they are joined.
     pub points: Vec<(f64, f64)>,
-    /// Half the length of each point's error bar, or half the width of the band around the curve; empty for a curve without.
+    /// Half the length of each point's error bar, or half the width of the band around the curve; empty for a
+    /// curve without.
     pub errors: Vec<Option<f64>>,
     /// True if the errors are a band.
     pub band: bool,
@@ -102,7 +103,8 @@ impl Curve {
 
     /// True if a bar or the band ends at zero for that reason.
     pub(super) fn is_cut(&self) -> bool {
-        let cut = |((_, y), error): (&(f64, f64), &Option<f64>)| *y >= 0.0 && error.is_some_and(|error| error > *y);
+        let cut =
+            |((_, y), error): (&(f64, f64), &Option<f64>)| *y >= 0.0 && error.is_some_and(|error| error > *y);
         self.positive && self.points.iter().zip(&self.errors).any(cut)
     }
 }

@@ -75,8 +75,10 @@ impl Closer<'_> {
     pub(super) fn landmarks(&self) -> Result<Vec<Kept>, FigureError> {
         let mut kept = self.contacts.i64("step")?;
         kept.dedup();
-        let (branches, of, loads) = (self.steps.text("branch")?, self.steps.f64_or_null("max_load")?, self.steps.f64("load")?);
-        let load = |step: &i64| usize::try_from(*step).ok().and_then(|k| loads.get(k).copied()).unwrap_or(f64::NAN);
+        let (branches, of, loads) =
+            (self.steps.text("branch")?, self.steps.f64_or_null("max_load")?, self.steps.f64("load")?);
+        let load =
+            |step: &i64| usize::try_from(*step).ok().and_then(|k| loads.get(k).copied()).unwrap_or(f64::NAN);
         let on = |branch: &str, max_load: Option<f64>| -> Vec<i64> {
             let fits = |step: &&i64| {
                 let k = usize::try_from(**step).unwrap_or(usize::MAX);
@@ -85,13 +87,29 @@ impl Closer<'_> {
             kept.iter().filter(fits).copied().collect()
         };
         let (loading, unloading) = (on("loading", None), on("unloading", Some(self.max_load)));
-        let nearest = |wanted: f64| loading.iter().min_by(|u, v| (load(u) - wanted).abs().total_cmp(&(load(v) - wanted).abs())).copied();
-        let reversal = self.steps.f64_or_null("reversal_load")?.iter().position(|load| *load == Some(self.max_load));
+        let nearest = |wanted: f64| {
+            loading
+                .iter()
+                .min_by(|u, v| (load(u) - wanted).abs().total_cmp(&(load(v) - wanted).abs()))
+                .copied()
+        };
+        let reversal =
+            self.steps.f64_or_null("reversal_load")?.iter().position(|load| *load == Some(self.max_load));
         let found = [
             (Landmark::Half, nearest(0.5 * self.max_load)),
-            (Landmark::Turning, loading.iter().find(|step| usize::try_from(**step).ok() == reversal).copied()),
+            (
+                Landmark::Turning,
+                loading.iter().find(|step| usize::try_from(**step).ok() == reversal).copied(),
+            ),
             (Landmark::NoLoad, unloading.iter().find(|step| load(step) <= 0.0).copied()),
-            (Landmark::PullOff, unloading.iter().min_by(|u, v| load(u).total_cmp(&load(v))).filter(|step| load(step) < 0.0).copied()),
+            (
+                Landmark::PullOff,
+                unloading
+                    .iter()
+                    .min_by(|u, v| load(u).total_cmp(&load(v)))
+                    .filter(|step| load(step) < 0.0)
+                    .copied(),
+            ),
         ];
         Ok(found.into_iter().filter_map(|(landmark, step)| step.map(|step| (landmark, step))).collect())
     }

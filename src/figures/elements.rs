@@ -27,7 +27,8 @@ pub struct ElementsLoop<'a> {
     pub maps: Option<&'a LoopMaps>,
 }
 
-/// The loop with its area Θ and the pull-off force, and the contact with its pressure at the load reversal and at pull-off.
+/// The loop with its area Θ and the pull-off force, and the contact with its pressure at the load reversal
+/// and at pull-off.
 ///
 /// # Errors
 /// If a table lacks a column.
@@ -48,10 +49,16 @@ pub fn elements_loop(of: &ElementsLoop<'_>) -> Result<(Panel, Option<Drawing>), 
 fn marked(mut plot: XyPlot) -> XyPlot {
     let [loading, unloading] = &plot.curves[..] else { return plot };
     let area = area(&loading.points, &unloading.points);
-    let lowest = unloading.points.iter().copied().min_by(|u, v| u.1.total_cmp(&v.1)).filter(|point| point.1 < 0.0);
+    let lowest =
+        unloading.points.iter().copied().min_by(|u, v| u.1.total_cmp(&v.1)).filter(|point| point.1 < 0.0);
     plot.key.push(entry("Θ/(E^{*}A_{0}h_{rms})", RESULT, Some(Stroke::Area), true));
     if let Some((at, load)) = lowest {
-        plot.curves.push(curve(("pull_off", ""), vec![(at, 0.0), (at, load)], shade(THEORY, 0, 1), Stroke::Dotted));
+        plot.curves.push(curve(
+            ("pull_off", ""),
+            vec![(at, 0.0), (at, load)],
+            shade(THEORY, 0, 1),
+            Stroke::Dotted,
+        ));
         plot.notes.push(Note { at: (at, 0.08 * load), text: "F_{po}".to_owned(), beside: false });
     }
     // Last, so that the other curves keep their numbers in the table of panels.
@@ -59,7 +66,8 @@ fn marked(mut plot: XyPlot) -> XyPlot {
     plot
 }
 
-/// The area between loading and unloading. Before the first contact and after the last separation the load is zero.
+/// The area between loading and unloading. Before the first contact and after the last separation the load is
+/// zero.
 fn area(loading: &[(f64, f64)], unloading: &[(f64, f64)]) -> Curve {
     let ordered = |points: &[(f64, f64)]| {
         let mut points = points.to_vec();
@@ -70,13 +78,15 @@ fn area(loading: &[(f64, f64)], unloading: &[(f64, f64)]) -> Curve {
     let mut at: Vec<f64> = up.iter().chain(&down).map(|point| point.0).collect();
     at.sort_by(f64::total_cmp);
     at.dedup();
-    let ends: Vec<(f64, f64, f64)> = at.into_iter().map(|x| (x, between(&up, x), between(&down, x))).collect();
+    let ends: Vec<(f64, f64, f64)> =
+        at.into_iter().map(|x| (x, between(&up, x), between(&down, x))).collect();
     let points = ends.iter().map(|(x, up, down)| (*x, 0.5 * (up + down))).collect();
     let errors = ends.iter().map(|(_, up, down)| Some(0.5 * (up - down).abs())).collect();
     Curve { errors, band: true, ..curve(("area", ""), points, shade(RESULT, 0, 1), Stroke::Area) }
 }
 
-/// The load at a penetration, linear between the points of a branch, 0 before the first one and that of the last one after it.
+/// The load at a penetration, linear between the points of a branch, 0 before the first one and that of the
+/// last one after it.
 fn between(points: &[(f64, f64)], x: f64) -> f64 {
     let next = points.partition_point(|point| point.0 < x);
     match (next.checked_sub(1).and_then(|before| points.get(before)), points.get(next)) {
@@ -93,11 +103,14 @@ mod tests {
 
     #[test]
     fn law_the_shaded_area_is_the_work_of_the_loop() {
-        // Loading: (0, 0) to (2, 1). Unloading: back to (0, −0.5), then to (−1, 0). By hand: triangles 0.5 · 0.5 · 2 and 0.5 · 0.5 · 1.
+        // Loading: (0, 0) to (2, 1). Unloading: back to (0, −0.5), then to (−1, 0). By hand: triangles 0.5 ·
+        // 0.5 · 2 and 0.5 · 0.5 · 1.
         let (loading, unloading) = ([(0.0, 0.0), (2.0, 1.0)], [(2.0, 1.0), (0.0, -0.5), (-1.0, 0.0)]);
         let area = area(&loading, &unloading);
         let width = |k: usize| 2.0 * area.errors[k].unwrap_or_default();
-        let sum: f64 = (1..area.points.len()).map(|k| 0.5 * (width(k) + width(k - 1)) * (area.points[k].0 - area.points[k - 1].0)).sum();
+        let sum: f64 = (1..area.points.len())
+            .map(|k| 0.5 * (width(k) + width(k - 1)) * (area.points[k].0 - area.points[k - 1].0))
+            .sum();
         assert!((sum - 0.75).abs() < 1e-15, "{sum}");
     }
 }

@@ -67,7 +67,9 @@ pub(super) fn map(parameters: &str, steps: &Frame, maps: &LoopMaps) -> Result<Dr
          font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
     );
-    for (k, (words, map)) in shown().into_iter().filter_map(|(words, map)| map.map(|map| (words, map))).enumerate() {
+    for (k, (words, map)) in
+        shown().into_iter().filter_map(|(words, map)| map.map(|map| (words, map))).enumerate()
+    {
         let left = GAP + k as f64 * (SIDE + GAP);
         let at = usize::try_from(map.step).unwrap_or(usize::MAX);
         let number = |values: &[f64]| values.get(at).copied().unwrap_or(f64::NAN);
@@ -89,7 +91,8 @@ pub(super) fn map(parameters: &str, steps: &Frame, maps: &LoopMaps) -> Result<Dr
     }
     svg += &legend(height - LEGEND + 14.0, scale);
     let caption = format!(
-        "Contact by boundary elements, for {}. Colour: pressure at the grid points in contact. File maps.h5: pressure_pa, gap_m.",
+        "Contact by boundary elements, for {}. Colour: pressure at the grid points in contact. File maps.h5: \
+         pressure_pa, gap_m.",
         parameters
     );
     Ok(Drawing::new("elements_map", caption, &markup::render(&svg)))
@@ -136,13 +139,19 @@ fn legend(foot: f64, scale: Scale) -> String {
     let mut svg = String::new();
     for level in (-(LEVELS as i8)..=LEVELS as i8).filter(|level| *level != 0) {
         let at = middle + size * f64::from(if level > 0 { level - 1 } else { level });
-        let _ = write!(svg, "<rect x=\"{at}\" y=\"{}\" width=\"{size}\" height=\"14\" fill=\"{}\"/>", foot - 11.0, colour(level));
+        let _ = write!(
+            svg,
+            "<rect x=\"{at}\" y=\"{}\" width=\"{size}\" height=\"14\" fill=\"{}\"/>",
+            foot - 11.0,
+            colour(level)
+        );
     }
     let reach = size * LEVELS as f64 + 8.0;
     let _ = write!(
         svg,
         "<text x=\"{}\" y=\"{foot}\" font-size=\"13\" text-anchor=\"end\">{tensile}</text><text x=\"{}\" y=\"{foot}\" font-size=\"13\">{compressive}</text>\
-         <text x=\"{middle}\" y=\"{}\" font-size=\"12\" text-anchor=\"middle\">colours follow the square root of the pressure; light grey: out of contact</text></svg>",
+         <text x=\"{middle}\" y=\"{}\" font-size=\"12\" text-anchor=\"middle\">colours follow the square \
+              root of the pressure; light grey: out of contact</text></svg>",
         middle - reach,
         middle + reach,
         foot + 22.0

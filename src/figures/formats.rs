@@ -2,7 +2,8 @@
 
 use super::FigureError;
 
-/// The file of a figure in a format that this build writes; `width_mm` is the width of a panel on paper \[mm\], `font` that of SVG files.
+/// The file of a figure in a format that this build writes;
+/// `width_mm` is the width of a panel on paper \[mm\], `font` that of SVG files.
 ///
 /// # Errors
 /// If the text is no SVG, or the picture does not fit in memory.
@@ -19,5 +20,9 @@ pub fn file(format: &str, svg: &str, width_mm: f64, font: &str) -> Result<Vec<u8
 
 /// The SVG with a further font family before the existing ones.
 fn with_font(svg: &str, font: &str) -> String {
-    svg.replacen("font-family=\"", &format!("font-family=\"{font}, "), 1).replacen(&format!("{font}, {font}, "), &format!("{font}, "), 1)
+    svg.replacen("font-family=\"", &format!("font-family=\"{font}, "), 1).replacen(
+        &format!("{font}, {font}, "),
+        &format!("{font}, "),
+        1,
+    )
 }

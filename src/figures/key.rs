@@ -41,21 +41,34 @@ pub(super) fn add(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
 
 fn place(frame: &ComputedLayout, plot: &XyPlot) -> Place {
     let indent = |sampled: bool| if sampled { SAMPLE + 8.0 } else { 0.0 };
-    let width = plot.key.iter().map(|entry| markup::width(&entry.text, NOTE) + indent(entry.stroke.is_some())).fold(0.0, f64::max);
+    let width = plot
+        .key
+        .iter()
+        .map(|entry| markup::width(&entry.text, NOTE) + indent(entry.stroke.is_some()))
+        .fold(0.0, f64::max);
     let height = plot.key.len() as f64 * NOTE_PITCH;
     let (left, top) = (frame.margin_left + 10.0, frame.margin_top + 6.0);
-    let (right, bottom) = (frame.width - frame.margin_right - 6.0 - width, frame.height - frame.margin_bottom - 8.0 - height);
+    let (right, bottom) =
+        (frame.width - frame.margin_right - 6.0 - width, frame.height - frame.margin_bottom - 8.0 - height);
     let points = inked(frame, plot);
     let covered = |place: &Place| {
         let (left, top, width, height) = *place;
-        let inside = |(x, y): &&(f64, f64)| (left - 6.0..left + width + 6.0).contains(x) && (top - 4.0..top + height + 4.0).contains(y);
+        let inside = |(x, y): &&(f64, f64)| {
+            (left - 6.0..left + width + 6.0).contains(x) && (top - 4.0..top + height + 4.0).contains(y)
+        };
         points.iter().filter(inside).count()
     };
-    let corners = [(left, top, width, height), (right, top, width, height), (right, bottom, width, height), (left, bottom, width, height)];
+    let corners = [
+        (left, top, width, height),
+        (right, top, width, height),
+        (right, bottom, width, height),
+        (left, bottom, width, height),
+    ];
     corners.into_iter().min_by_key(covered).unwrap_or((left, top, width, height))
 }
 
-/// Pixels that hold ink: points along every curve, close enough that none can pass through a key unseen, its bars, and the notes.
+/// Pixels that hold ink: points along every curve, close enough that none can pass through a key unseen, its
+/// bars, and the notes.
 fn inked(frame: &ComputedLayout, plot: &XyPlot) -> Vec<(f64, f64)> {
     let pixel = |x: f64, y: f64| (frame.map_x(plot.x.drawn(x)), frame.map_y(plot.y.drawn(y)));
     let mut points = Vec::new();

@@ -26,12 +26,16 @@ const MOST_SPOTS: usize = 4000;
 pub(super) const PUSHED: &str = "#0072b2";
 pub(super) const PULLED: &str = "#d55e00";
 
-/// The contact spots at each landmark whose spots were kept, over the heights as shades of grey, the lower the darker, with crosses at the absorbed asperities; nothing where
-/// none were kept.
+/// The contact spots at each landmark whose spots were kept, over the heights as shades of grey, the lower
+/// the darker, with crosses at the absorbed asperities; nothing where none were kept.
 ///
 /// # Errors
 /// If a table lacks a column.
-pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_, f64>) -> Result<Option<Drawing>, FigureError> {
+pub(super) fn map(
+    of: &Closer<'_>,
+    landmarks: &[Kept],
+    heights_m: ArrayView2<'_, f64>,
+) -> Result<Option<Drawing>, FigureError> {
     if landmarks.is_empty() {
         return Ok(None);
     }
@@ -51,7 +55,8 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
             "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{}: {}</text>\
              <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {:.2}</text>\
              <g transform=\"translate({left} {top})\"><g clip-path=\"url(#map-edge)\"><use xlink:href=\"#map-heights\"/>{spots}</g>\
-             <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/>{bar}</g>",
+             <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" \
+                  stroke=\"black\"/>{bar}</g>",
             top - 23.0,
             landmark.words(),
             counted(count, "contact spot"),
@@ -70,7 +75,8 @@ pub(super) fn map(of: &Closer<'_>, landmarks: &[Kept], heights_m: ArrayView2<'_,
     Ok(Some(Drawing::new("closer_map", caption, &markup::render(&svg))))
 }
 
-/// Beginning of an SVG of maps: the heights and the edge of a map are its definitions `<prefix>-heights` and `<prefix>-edge`.
+/// Beginning of an SVG of maps: the heights and the edge of a map are its definitions
+/// `<prefix>-heights` and `<prefix>-edge`.
 pub(super) fn sheet(width: f64, height: f64, prefix: &str, heights_m: ArrayView2<'_, f64>) -> String {
     format!(
         "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
@@ -84,7 +90,9 @@ pub(super) fn sheet(width: f64, height: f64, prefix: &str, heights_m: ArrayView2
 /// A number with three digits and, where it is small, a power of ten, with the markup of the figures.
 pub(super) fn power(number: f64) -> String {
     let text = significant(number, 3);
-    let text = text.split_once('e').map_or(text.clone(), |(digits, exponent)| format!("{digits} × 10^{{{exponent}}}"));
+    let text = text
+        .split_once('e')
+        .map_or(text.clone(), |(digits, exponent)| format!("{digits} × 10^{{{exponent}}}"));
     text.replace('-', "−")
 }
 
@@ -92,13 +100,18 @@ pub(super) fn power(number: f64) -> String {
 pub(super) fn scale_bar(length_m: f64) -> String {
     // The largest of 1, 2 and 5 times a power of ten that is at most a quarter of the side.
     let power = 10f64.powf((0.25 * length_m).log10().floor());
-    let bar = [5.0, 2.0, 1.0].into_iter().map(|factor| factor * power).find(|bar| *bar <= 0.25 * length_m * (1.0 + 1e-9)).unwrap_or(power);
+    let bar = [5.0, 2.0, 1.0]
+        .into_iter()
+        .map(|factor| factor * power)
+        .find(|bar| *bar <= 0.25 * length_m * (1.0 + 1e-9))
+        .unwrap_or(power);
     let (width, foot) = (SIDE * bar / length_m, SIDE - 8.0);
     let text = labels_with_unit("length_m", &[bar]).concat();
     format!(
         "<rect x=\"4\" y=\"{}\" width=\"{:.2}\" height=\"36\" fill=\"white\" fill-opacity=\"0.85\"/>\
          <rect x=\"10\" y=\"{}\" width=\"{width:.2}\" height=\"3\"/><text x=\"10\" y=\"{}\" font-size=\"12\">{text}</text>\
-         <text x=\"{:.2}\" y=\"{}\" font-size=\"12\">x →</text><text x=\"{:.2}\" y=\"{}\" font-size=\"12\">y ↑</text>",
+         <text x=\"{:.2}\" y=\"{}\" font-size=\"12\">x →</text><text x=\"{:.2}\" y=\"{}\" font-size=\"12\">y \
+              ↑</text>",
         SIDE - 40.0,
         width + 48.0,
         foot - 3.0,
@@ -114,11 +127,13 @@ pub(super) fn scale_bar(length_m: f64) -> String {
 pub(super) fn legend(foot: f64, heights_m: ArrayView2<'_, f64>) -> String {
     let (low, high) = extent(heights_m);
     let rounded = |height: f64| significant(height, 3).parse().unwrap_or(height);
-    let [low, high] = [low, high].map(|height| labels_with_unit("height_m", &[rounded(height)]).concat().replace('-', "−"));
+    let [low, high] =
+        [low, high].map(|height| labels_with_unit("height_m", &[rounded(height)]).concat().replace('-', "−"));
     let mut svg = format!(
         "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">compressive</text>\
          <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile</text>\
-         <path d=\"M{} {}l6 6m0 -6l-6 6\" stroke=\"black\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">absorbed by a larger contact</text>",
+         <path d=\"M{} {}l6 6m0 -6l-6 6\" stroke=\"black\"/><text x=\"{}\" y=\"{foot}\" \
+              font-size=\"13\">absorbed by a larger contact</text>",
         GAP + 5.0,
         foot - 4.5,
         GAP + 15.0,
@@ -132,7 +147,8 @@ pub(super) fn legend(foot: f64, heights_m: ArrayView2<'_, f64>) -> String {
     let top = foot + 8.0;
     for k in 0..SHADES {
         let at = GAP + k as f64 * 10.0;
-        let _ = write!(svg, "<rect x=\"{at}\" y=\"{top}\" width=\"10.5\" height=\"12\" fill=\"{}\"/>", grey(k));
+        let _ =
+            write!(svg, "<rect x=\"{at}\" y=\"{top}\" width=\"10.5\" height=\"12\" fill=\"{}\"/>", grey(k));
     }
     let _ = write!(
         svg,
@@ -192,14 +208,22 @@ fn ground(heights: ArrayView2<'_, f64>) -> String {
     paths.into_iter().enumerate().map(fill).collect()
 }
 
-/// Contact spots at a step as circles, with the images across the edges of a periodic square, and their number.
-pub(super) fn circles(contacts: &Frame, length_m: f64, periodic: bool, step: i64) -> Result<(String, usize), FigureError> {
+/// Contact spots at a step as circles, with the images across the edges of a periodic square, and their
+/// number.
+pub(super) fn circles(
+    contacts: &Frame,
+    length_m: f64,
+    periodic: bool,
+    step: i64,
+) -> Result<(String, usize), FigureError> {
     let (steps, states) = (contacts.i64("step")?, contacts.text("state")?);
     let (radii, loads) = (contacts.f64("contact_radius_m")?, contacts.f64("load_n")?);
     let (x, y) = (contacts.f64("centroid_x_m")?, contacts.f64("centroid_y_m")?);
     let unit = SIDE / length_m;
     let place = |row: usize| (x[row] * unit, SIDE - y[row] * unit);
-    let of_state = |state: &str| (0..steps.len()).filter(|row| steps[*row] == step && states[*row] == state).collect::<Vec<_>>();
+    let of_state = |state: &str| {
+        (0..steps.len()).filter(|row| steps[*row] == step && states[*row] == state).collect::<Vec<_>>()
+    };
     let absorbed: Vec<(f64, f64)> = of_state("covered").into_iter().map(place).collect();
     let mut spots: Vec<(f64, f64, f64, bool)> = Vec::new();
     for row in of_state("contact") {

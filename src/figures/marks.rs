@@ -39,10 +39,14 @@ impl Stroke {
 
 /// The points of a curve as marks, a plot for each run of points of one colour.
 pub(super) fn marks(curve: &Curve, points: &[(f64, f64)]) -> Vec<Plot> {
-    let coloured: Vec<(&str, (f64, f64))> = points.iter().enumerate().map(|(place, point)| (curve.mark_colour(place), *point)).collect();
+    let coloured: Vec<(&str, (f64, f64))> =
+        points.iter().enumerate().map(|(place, point)| (curve.mark_colour(place), *point)).collect();
     let plot = |run: &[(&str, (f64, f64))]| {
         let colour = run.first().map_or("", |(colour, _)| colour).to_owned();
-        let marks = ScatterPlot::new().with_data(run.iter().map(|(_, point)| *point)).with_color(colour).with_size(curve.stroke.size());
+        let marks = ScatterPlot::new()
+            .with_data(run.iter().map(|(_, point)| *point))
+            .with_color(colour)
+            .with_size(curve.stroke.size());
         Plot::Scatter(marks.with_marker(curve.stroke.shape()))
     };
     coloured.chunk_by(|a, b| a.0 == b.0).map(plot).collect()
@@ -52,13 +56,23 @@ pub(super) fn marks(curve: &Curve, points: &[(f64, f64)]) -> Vec<Plot> {
 pub(super) fn sample(scene: &mut Scene, x: f64, y: f64, stroke: Stroke, colour: &str) {
     let size = stroke.size();
     let primitive = match stroke {
-        Stroke::Solid | Stroke::Points => {
-            Primitive::Circle { cx: x, cy: y, r: size, fill: colour.into(), fill_opacity: None, stroke: None, stroke_width: None }
+        Stroke::Solid | Stroke::Points => Primitive::Circle {
+            cx: x,
+            cy: y,
+            r: size,
+            fill: colour.into(),
+            fill_opacity: None,
+            stroke: None,
+            stroke_width: None,
+        },
+        Stroke::Dashed => {
+            path(format!("M {0} {1} h {2} v {2} h -{2} Z", x - size, y - size, 2.0 * size), colour, false)
         }
-        Stroke::Dashed => path(format!("M {0} {1} h {2} v {2} h -{2} Z", x - size, y - size, 2.0 * size), colour, false),
-        Stroke::Dotted | Stroke::Diamonds => {
-            path(format!("M {x} {0} L {1} {y} L {x} {2} L {3} {y} Z", y - size, x + size, y + size, x - size), colour, false)
-        }
+        Stroke::Dotted | Stroke::Diamonds => path(
+            format!("M {x} {0} L {1} {y} L {x} {2} L {3} {y} Z", y - size, x + size, y + size, x - size),
+            colour,
+            false,
+        ),
         Stroke::Area => Primitive::Path(Box::new(PathData {
             d: format!("M {0} {1} h {2} v {3} h -{2} Z", x - 2.0 * size, y - size, 4.0 * size, 2.0 * size),
             fill: Some(Color::from(colour)),
@@ -69,13 +83,25 @@ pub(super) fn sample(scene: &mut Scene, x: f64, y: f64, stroke: Stroke, colour: 
         })),
         Stroke::Crosses => {
             let arm = 0.9 * size;
-            path(format!("M {0} {1} l {2} {2} m 0 -{2} l -{2} {2}", x - arm, y - arm, 2.0 * arm), colour, true)
+            path(
+                format!("M {0} {1} l {2} {2} m 0 -{2} l -{2} {2}", x - arm, y - arm, 2.0 * arm),
+                colour,
+                true,
+            )
         }
     };
     scene.add(primitive);
 }
 
 fn path(d: String, colour: &str, outline: bool) -> Primitive {
-    let (fill, stroke) = if outline { (None, Color::from(colour)) } else { (Some(Color::from(colour)), Color::None) };
-    Primitive::Path(Box::new(PathData { d, fill, stroke, stroke_width: 1.5, opacity: None, stroke_dasharray: None }))
+    let (fill, stroke) =
+        if outline { (None, Color::from(colour)) } else { (Some(Color::from(colour)), Color::None) };
+    Primitive::Path(Box::new(PathData {
+        d,
+        fill,
+        stroke,
+        stroke_width: 1.5,
+        opacity: None,
+        stroke_dasharray: None,
+    }))
 }

@@ -1,4 +1,5 @@
-//! Subscripts and superscripts in labels: `h_{rms}`, `10^{-3}`. Unicode has no full set of such letters, and fonts lack those it has.
+//! Subscripts and superscripts in labels: `h_{rms}`, `10^{-3}`. Unicode has no full set of such letters, and
+//! fonts lack those it has.
 
 /// Size of shifted letters over that of the others.
 const SMALL: f64 = 0.72;
@@ -23,11 +24,13 @@ pub fn render(svg: &str) -> String {
 
 /// An SVG document with a description for readers who do not see it.
 pub fn described(svg: &str, description: &str) -> String {
-    let escaped = description.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
+    let escaped =
+        description.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
     svg.replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{escaped}\" "), 1)
 }
 
-/// The size that a text's tag states. Spans need it: shares of a size mean different things to different viewers.
+/// The size that a text's tag states. Spans need it: shares of a size mean different things to different
+/// viewers.
 fn font_size(tag: &str) -> f64 {
     let stated = tag.split_once("font-size=\"").and_then(|(_, after)| after.split_once('"'));
     stated.and_then(|(size, _)| size.parse().ok()).unwrap_or(14.0)
@@ -40,7 +43,11 @@ fn push_text(out: &mut String, text: &str, size: f64) {
     while let Some((before, mark, inside, after)) = next_mark(rest) {
         shifted = push_plain(out, before, shifted);
         let wanted = if mark == '_' { 0.22 * size } else { -0.32 * size };
-        out.push_str(&format!("<tspan dy=\"{:.2}\" font-size=\"{:.2}\">{inside}</tspan>", wanted - shifted, SMALL * size));
+        out.push_str(&format!(
+            "<tspan dy=\"{:.2}\" font-size=\"{:.2}\">{inside}</tspan>",
+            wanted - shifted,
+            SMALL * size
+        ));
         shifted = wanted;
         rest = after;
     }

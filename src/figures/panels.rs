@@ -59,8 +59,8 @@ pub fn panels(tables: &Tables<'_>, sweep: &str) -> Result<Vec<Panel>, FigureErro
     Ok(panels)
 }
 
-/// Draws the same panels of one case in several campaigns: the tables hold a row of it, and its paths, for each, and `labels` are what the campaigns are called, in the
-/// order of the rows.
+/// Draws the same panels of one case in several campaigns: the tables hold a row of it, and its paths, for
+/// each, and `labels` are what the campaigns are called, in the order of the rows.
 ///
 /// # Errors
 /// If a table lacks a column.
@@ -79,12 +79,20 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str) -> Result<Vec<Panel>, F
         (load, true) => format!("F_{{max}}/(E*A_{{0}}) = {load}"),
         (label, false) => label.to_owned(),
     };
-    let cases: Vec<(String, String)> = found.members.iter().map(|member| (named(member), member.colour.clone())).collect();
+    let cases: Vec<(String, String)> =
+        found.members.iter().map(|member| (named(member), member.colour.clone())).collect();
     let panel = |(letter, plot): (char, XyPlot)| {
         let stem = format!("{stem}_{letter}");
         let plot = XyPlot { letter, stem: stem.clone(), margin, ..plot };
         let caption = of_sweep(letter, found, &surfaces, &plot);
-        Panel { stem, name: letter.to_string(), svg: described(&plot_xy(&plot), &caption), caption, cases: cases.clone(), plot }
+        Panel {
+            stem,
+            name: letter.to_string(),
+            svg: described(&plot_xy(&plot), &caption),
+            caption,
+            cases: cases.clone(),
+            plot,
+        }
     };
     Ok(plots.into_iter().map(panel).collect())
 }
@@ -93,14 +101,26 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str) -> Result<Vec<Panel>, F
 fn plots(tables: &Tables<'_>, found: &Sweep) -> Result<Vec<(char, XyPlot)>, FigureError> {
     // Releasing absorbed asperities has no potential, so that one branch may gain energy.
     let branch = |name, text, stroke| Measured { name, text, stroke, positive: false };
-    let computed = |name: &'static str| Measured { name, text: "simulation", stroke: Stroke::Solid, positive: true };
+    let computed =
+        |name: &'static str| Measured { name, text: "simulation", stroke: Stroke::Solid, positive: true };
     let theories = [
-        Predicted { name: "loss_dk", stroke: Stroke::Dashed, text: "Deng–Kesari, target spectrum", abbreviation: "DK target" },
         Predicted {
-            name: "loss_dk_realised", stroke: Stroke::Dotted, text: "Deng–Kesari, realised spectrum", abbreviation: "DK realised"
+            name: "loss_dk",
+            stroke: Stroke::Dashed,
+            text: "Deng–Kesari, target spectrum",
+            abbreviation: "DK target",
+        },
+        Predicted {
+            name: "loss_dk_realised",
+            stroke: Stroke::Dotted,
+            text: "Deng–Kesari, realised spectrum",
+            abbreviation: "DK realised",
         },
     ];
-    let branches = [branch("dissipated_unloading", "unloading", Stroke::Solid), branch("dissipated_loading", "loading", Stroke::Dashed)];
+    let branches = [
+        branch("dissipated_unloading", "unloading", Stroke::Solid),
+        branch("dissipated_loading", "loading", Stroke::Dashed),
+    ];
     Ok(vec![
         ('A', paths(tables.curves, found, ("area", "A/A_{0}"), true)?),
         ('B', results(tables, found, "F_{po}/(E^{*}A_{0})", &[computed("pull_off_load")], &[])?),
@@ -114,7 +134,8 @@ fn plots(tables: &Tables<'_>, found: &Sweep) -> Result<Vec<(char, XyPlot)>, Figu
 fn surfaces(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
     let done = cases.i64("done_count")?;
     let counts = || sweep.members.iter().filter_map(|member| done.get(member.row));
-    let (least, most) = (counts().min().copied().unwrap_or_default(), counts().max().copied().unwrap_or_default());
+    let (least, most) =
+        (counts().min().copied().unwrap_or_default(), counts().max().copied().unwrap_or_default());
     Ok(match (least, most) {
         (_, 0) => "no surface finished".to_owned(),
         (1, 1) => "one surface".to_owned(),

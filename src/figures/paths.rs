@@ -10,20 +10,33 @@ use crate::store::Frame;
 const LOAD: &str = "F/(E^{*}A_{0})";
 
 /// Loading and unloading paths of every member, of a quantity that may be one that cannot be negative.
-pub(super) fn paths(table: &Frame, sweep: &Sweep, (column, label): (&str, &str), positive: bool) -> Result<XyPlot, FigureError> {
+pub(super) fn paths(
+    table: &Frame,
+    sweep: &Sweep,
+    (column, label): (&str, &str),
+    positive: bool,
+) -> Result<XyPlot, FigureError> {
     let (ids, branches) = (table.text("case_id")?, table.text("branch")?);
-    let (max_loads, loads, values) = (table.f64_or_null("max_load")?, table.f64("load")?, table.f64(&format!("{column}_mean"))?);
+    let (max_loads, loads, values) =
+        (table.f64_or_null("max_load")?, table.f64("load")?, table.f64(&format!("{column}_mean"))?);
     let spreads = table.f64_or_null(&format!("{column}_sd"))?;
-    let picked = |member: &Member, branch: &str, max_load: Option<f64>, colour: String, stroke: Stroke| -> Curve {
-        let of_it = |row: &usize| {
-            ids.get(*row) == Some(&member.case_id.as_str()) && branches.get(*row) == Some(&branch) && max_loads.get(*row) == Some(&max_load)
+    let picked =
+        |member: &Member, branch: &str, max_load: Option<f64>, colour: String, stroke: Stroke| -> Curve {
+            let of_it = |row: &usize| {
+                ids.get(*row) == Some(&member.case_id.as_str())
+                    && branches.get(*row) == Some(&branch)
+                    && max_loads.get(*row) == Some(&max_load)
+            };
+            let rows: Vec<usize> = (0..table.row_count()).filter(of_it).collect();
+            let points = rows
+                .iter()
+                .filter_map(|row| loads.get(*row).copied().zip(values.get(*row).copied()))
+                .collect();
+            let errors: Vec<Option<f64>> =
+                rows.iter().map(|row| spreads.get(*row).copied().flatten()).collect();
+            let band = errors.iter().any(Option::is_some);
+            Curve { errors, band, positive, ..curve((branch, &member.label), points, colour, stroke) }
         };
-        let rows: Vec<usize> = (0..table.row_count()).filter(of_it).collect();
-        let points = rows.iter().filter_map(|row| loads.get(*row).copied().zip(values.get(*row).copied())).collect();
-        let errors: Vec<Option<f64>> = rows.iter().map(|row| spreads.get(*row).copied().flatten()).collect();
-        let band = errors.iter().any(Option::is_some);
-        Curve { errors, band, positive, ..curve((branch, &member.label), points, colour, stroke) }
-    };
     let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
     let beside = !sweep.differing.is_empty();
     let every = sweep.members.len().div_ceil(MOST_NOTES);
@@ -36,7 +49,8 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, (column, label): (&str, &str),
     }
     curves.reverse();
     for (at, member) in sweep.members.iter().enumerate() {
-        let unloading = picked(member, "unloading", Some(member.max_load), member.colour.clone(), Stroke::Solid);
+        let unloading =
+            picked(member, "unloading", Some(member.max_load), member.colour.clone(), Stroke::Solid);
         if let Some(end) = unloading.points.first()
             && sweep.members.len() > 1
             && at % every == 0
@@ -45,7 +59,10 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, (column, label): (&str, &str),
         }
         curves.push(unloading);
     }
-    let mut key = vec![entry("loading", NEUTRAL, Some(Stroke::Dashed), false), entry("unloading", NEUTRAL, Some(Stroke::Solid), false)];
+    let mut key = vec![
+        entry("loading", NEUTRAL, Some(Stroke::Dashed), false),
+        entry("unloading", NEUTRAL, Some(Stroke::Solid), false),
+    ];
     if curves.iter().any(|curve| curve.band) {
         let cut = if curves.iter().any(Curve::is_cut) { ", end at 0" } else { "" };
         key.push(entry(&format!("bands: ± one standard deviation{cut}"), NEUTRAL, None, false));
@@ -60,5 +77,15 @@ pub(super) fn paths(table: &Frame, sweep: &Sweep, (column, label): (&str, &str),
         Axis::holding(LOAD, all().map(|point| point.0), true).with_headroom(room),
         Axis::holding(label, curves.iter().flat_map(Curve::heights), true),
     );
-    Ok(XyPlot { stem: String::new(), letter: ' ', title: String::new(), x, y, curves, key, notes, margin: 0.0 })
+    Ok(XyPlot {
+        stem: String::new(),
+        letter: ' ',
+        title: String::new(),
+        x,
+        y,
+        curves,
+        key,
+        notes,
+        margin: 0.0,
+    })
 }

@@ -13,7 +13,8 @@ use super::curve::{Curve, NOTE, NOTE_PITCH, XyPlot, text};
 use super::marks::{BAND_OPACITY, marks};
 use super::{key, markup};
 
-/// Size of a panel in pixels; at one column of a journal, 88 mm, a pixel is 0.18 mm and the smallest text 6.8 points.
+/// Size of a panel in pixels; at one column of a journal, 88 mm, a pixel is 0.18 mm and the smallest text 6.8
+/// points.
 const SIZE: (f64, f64) = (480.0, 380.0);
 const LABEL: u32 = 16;
 const TICK: u32 = 14;
@@ -47,8 +48,9 @@ pub fn plot_xy(plot: &XyPlot) -> String {
     markup::render(&own_clips(&svg, &plot.stem))
 }
 
-/// The library numbers its clip paths through all pictures that a program draws. Here each has its own, counted from zero under its own name: the same plot is the same
-/// picture whatever was drawn before, and two pictures in one page do not cut each other.
+/// The library numbers its clip paths through all pictures that a program draws. Here each has its own,
+/// counted from zero under its own name: the same plot is the same picture whatever was drawn before, and two
+/// pictures in one page do not cut each other.
 fn own_clips(svg: &str, stem: &str) -> String {
     let mut parts = svg.split("kuva-clip-");
     let mut own = parts.next().unwrap_or_default().to_owned();
@@ -72,7 +74,11 @@ fn layout(plot: &XyPlot) -> Layout {
         let axis = axis.clone();
         TickFormat::Custom(Arc::new(move |value| axis.tick_label(value)))
     };
-    let left = 48.0 + y.ticks().iter().map(|tick| markup::width(&y.tick_label(*tick), TICK)).fold(2.0 * f64::from(TICK), f64::max);
+    let left = 48.0
+        + y.ticks()
+            .iter()
+            .map(|tick| markup::width(&y.tick_label(*tick), TICK))
+            .fold(2.0 * f64::from(TICK), f64::max);
     Layout::new(x.drawn_range(), y.drawn_range())
         .with_width(SIZE.0 + beside)
         .with_height(SIZE.1)
@@ -97,7 +103,11 @@ fn layout(plot: &XyPlot) -> Layout {
 
 /// Width of the texts at the right of the plot, in pixels.
 pub(super) fn width_beside(plot: &XyPlot) -> f64 {
-    plot.notes.iter().filter(|note| note.beside).map(|note| markup::width(&note.text, NOTE)).fold(0.0, f64::max)
+    plot.notes
+        .iter()
+        .filter(|note| note.beside)
+        .map(|note| markup::width(&note.text, NOTE))
+        .fold(0.0, f64::max)
 }
 
 /// Band of the errors of a curve.
@@ -115,14 +125,19 @@ fn band(curve: &Curve, plot: &XyPlot) -> Plot {
 }
 
 fn drawn(curve: &Curve, plot: &XyPlot) -> Vec<Plot> {
-    let points: Vec<(f64, f64)> = curve.points.iter().map(|(x, y)| (plot.x.drawn(*x), plot.y.drawn(*y))).collect();
+    let points: Vec<(f64, f64)> =
+        curve.points.iter().map(|(x, y)| (plot.x.drawn(*x), plot.y.drawn(*y))).collect();
     let style = match curve.stroke.dashes() {
         None => kuva::plot::line::LineStyle::Solid,
         Some(dashes) => kuva::plot::line::LineStyle::Custom(dashes.to_owned()),
     };
     let mut plots = Vec::new();
     if curve.has_line() {
-        let line = LinePlot::new().with_data(points.clone()).with_color(curve.colour.clone()).with_stroke_width(2.0).with_line_style(style);
+        let line = LinePlot::new()
+            .with_data(points.clone())
+            .with_color(curve.colour.clone())
+            .with_stroke_width(2.0)
+            .with_line_style(style);
         plots.push(Plot::Line(line));
     }
     for (place, point) in points.iter().enumerate().filter(|_| !curve.band) {
@@ -145,10 +160,17 @@ fn add_notes(scene: &mut Scene, frame: &ComputedLayout, plot: &XyPlot) {
         let (x, y) = pixel(note.at);
         text(scene, (x + 4.0, y + 15.0), &note.text, TextAnchor::Start);
     }
-    let mut beside: Vec<((f64, f64), &str)> =
-        plot.notes.iter().filter(|note| note.beside).map(|note| (pixel(note.at), note.text.as_str())).collect();
+    let mut beside: Vec<((f64, f64), &str)> = plot
+        .notes
+        .iter()
+        .filter(|note| note.beside)
+        .map(|note| (pixel(note.at), note.text.as_str()))
+        .collect();
     beside.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
-    let heights = apart(&beside.iter().map(|note| note.0.1).collect::<Vec<_>>(), (frame.margin_top, frame.height - frame.margin_bottom));
+    let heights = apart(
+        &beside.iter().map(|note| note.0.1).collect::<Vec<_>>(),
+        (frame.margin_top, frame.height - frame.margin_bottom),
+    );
     let edge = frame.width - frame.margin_right;
     for ((end, content), height) in beside.iter().zip(heights) {
         scene.add(Primitive::Line {

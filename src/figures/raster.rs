@@ -1,4 +1,5 @@
-//! Figures as PNG and PDF (feature `raster`). Letters come from fonts of the program, so that a figure has the same bytes on every machine.
+//! Figures as PNG and PDF (feature `raster`). Letters come from fonts of the program, so that a figure has
+//! the same bytes on every machine.
 
 use super::FigureError;
 use resvg::tiny_skia::{Color, Pixmap, Transform};
@@ -24,7 +25,8 @@ static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
 });
 
 fn tree(svg: &str) -> Result<Tree, FigureError> {
-    let options = Options { fontdb: FONTS.clone(), font_family: "DejaVu Sans".to_owned(), ..Options::default() };
+    let options =
+        Options { fontdb: FONTS.clone(), font_family: "DejaVu Sans".to_owned(), ..Options::default() };
     Tree::from_str(svg, &options).map_err(|error| FigureError::Format(error.to_string()))
 }
 
@@ -36,22 +38,34 @@ pub fn png(svg: &str, width_mm: f64) -> Result<Vec<u8>, FigureError> {
     let tree = tree(svg)?;
     let size = tree.size();
     let [width, height] = [size.width(), size.height()].map(|pixels| (pixels * DOTS).ceil() as u32);
-    let mut dots = Pixmap::new(width, height).ok_or_else(|| FigureError::Format(format!("it has {width} x {height} dots")))?;
+    let mut dots = Pixmap::new(width, height)
+        .ok_or_else(|| FigureError::Format(format!("it has {width} x {height} dots")))?;
     // On white, so that every dot is opaque.
     dots.fill(Color::WHITE);
     resvg::render(&tree, Transform::from_scale(DOTS, DOTS), &mut dots.as_mut());
-    let colours: Vec<u8> = dots.pixels().iter().flat_map(|dot| [dot.red(), dot.green(), dot.blue()]).collect();
-    encode(&colours, width, height, pixels_per_inch(width_mm)).map_err(|error| FigureError::Format(error.to_string()))
+    let colours: Vec<u8> =
+        dots.pixels().iter().flat_map(|dot| [dot.red(), dot.green(), dot.blue()]).collect();
+    encode(&colours, width, height, pixels_per_inch(width_mm))
+        .map_err(|error| FigureError::Format(error.to_string()))
 }
 
-fn encode(colours: &[u8], width: u32, height: u32, pixels_per_inch: f32) -> Result<Vec<u8>, png::EncodingError> {
+fn encode(
+    colours: &[u8],
+    width: u32,
+    height: u32,
+    pixels_per_inch: f32,
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);
     // Flat colours: this is small, and many times as fast as the default.
     encoder.set_compression(png::Compression::Fast);
     let per_metre = (DOTS * pixels_per_inch / 0.0254).round() as u32;
-    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }));
+    encoder.set_pixel_dims(Some(png::PixelDimensions {
+        xppu: per_metre,
+        yppu: per_metre,
+        unit: png::Unit::Meter,
+    }));
     encoder.write_header()?.write_image_data(colours)?;
     Ok(file)
 }
@@ -65,12 +79,14 @@ pub fn pdf(svg: &str, width_mm: f64) -> Result<Vec<u8>, FigureError> {
     // The library writes several fonts in an order that differs between runs. One font is enough for the
     // letter of a panel.
     let svg = svg.replace(" font-weight=\"bold\"", "");
-    let file = svg2pdf::to_pdf(&tree(&svg)?, ConversionOptions::default(), page).map_err(|error| FigureError::Format(error.to_string()))?;
+    let file = svg2pdf::to_pdf(&tree(&svg)?, ConversionOptions::default(), page)
+        .map_err(|error| FigureError::Format(error.to_string()))?;
     Ok(in_order(&file))
 }
 
-/// The file with the resources of each page and group in order: the library lists them in the order of a hash map, which differs between runs. Lines change places
-/// with others of the same list, so that all that follows stays where it is.
+/// The file with the resources of each page and group in order: the library lists them in the order of a hash
+/// map, which differs between runs. Lines change places with others of the same list, so that all that
+/// follows stays where it is.
 fn in_order(file: &[u8]) -> Vec<u8> {
     let mut ordered = Vec::with_capacity(file.len());
     let mut list: Vec<&[u8]> = Vec::new();
@@ -94,6 +110,8 @@ fn in_order(file: &[u8]) -> Vec<u8> {
 fn is_resource(line: &[u8]) -> bool {
     let Ok(text) = std::str::from_utf8(line) else { return false };
     let mut words = text.split_whitespace();
-    let named = words.next().is_some_and(|name| name.starts_with('/') && name.ends_with(|c: char| c.is_ascii_digit()));
+    let named = words
+        .next()
+        .is_some_and(|name| name.starts_with('/') && name.ends_with(|c: char| c.is_ascii_digit()));
     named && words.next().is_some_and(|number| number.parse::<u32>().is_ok()) && words.eq(["0", "R"])
 }

@@ -113,7 +113,10 @@ fn predict(
         {
             drawn.notes.push(Note { at: *end, text: format!("{abbreviation}, {name}"), beside: true });
         }
-        let line = Curve { joined: sweep.is_joined(), ..curve((theory, name), points, shade(THEORY, at, series.len()), stroke) };
+        let line = Curve {
+            joined: sweep.is_joined(),
+            ..curve((theory, name), points, shade(THEORY, at, series.len()), stroke)
+        };
         any |= !line.points.is_empty();
         marked |= line.is_marked();
         drawn.curves.push(line);
@@ -125,13 +128,20 @@ fn predict(
 }
 
 /// Means of a result with error bars, or with crosses where there are too few surfaces for these.
-fn measure(tables: &Tables<'_>, sweep: &Sweep, series: &[&str], of: &Measured, drawn: &mut Drawn) -> Result<(), FigureError> {
+fn measure(
+    tables: &Tables<'_>,
+    sweep: &Sweep,
+    series: &[&str],
+    of: &Measured,
+    drawn: &mut Drawn,
+) -> Result<(), FigureError> {
     let Measured { name, text, stroke, positive } = *of;
     let column = |end: &str| tables.cases.f64_or_null(&format!("{name}_{end}"));
     let (means, sds) = (column("mean")?, column("sd")?);
     let mut spread = false;
     for (at, series_name) in series.iter().enumerate() {
-        let members: Vec<&Member> = joined(sweep, series_name).filter(|member| point(means, member).is_some()).collect();
+        let members: Vec<&Member> =
+            joined(sweep, series_name).filter(|member| point(means, member).is_some()).collect();
         let points: Vec<(f64, f64)> = members.iter().filter_map(|member| point(means, member)).collect();
         if let Some(end) = points.last()
             && series.len() > 1
@@ -152,9 +162,21 @@ fn measure(tables: &Tables<'_>, sweep: &Sweep, series: &[&str], of: &Measured, d
         spread |= errors.iter().any(Option::is_some);
         let mean = curve((name, series_name), points, shade(NEUTRAL, 0, 1), stroke);
         let mark_colours = members.iter().map(|member| member.colour.clone()).collect();
-        drawn.curves.push(Curve { errors, positive, marked: true, mark_colours, joined: sweep.is_joined(), ..mean });
+        drawn.curves.push(Curve {
+            errors,
+            positive,
+            marked: true,
+            mark_colours,
+            joined: sweep.is_joined(),
+            ..mean
+        });
         if !crosses.is_empty() {
-            let single = curve((&format!("{name}_single"), series_name), crosses, shade(NEUTRAL, 0, 1), Stroke::Crosses);
+            let single = curve(
+                (&format!("{name}_single"), series_name),
+                crosses,
+                shade(NEUTRAL, 0, 1),
+                Stroke::Crosses,
+            );
             drawn.curves.push(Curve { mark_colours: hues, ..single });
         }
     }

@@ -21,7 +21,8 @@ const COLUMN: f64 = 210.0;
 const GAP: f64 = 22.0;
 const TEXT: u32 = 13;
 
-/// A case: label, and relative difference with the half-width of its confidence interval of each quantity, in percent.
+/// A case: label, and relative difference with the half-width of its confidence interval of each quantity, in
+/// percent.
 struct Row {
     label: String,
     changes: [Option<(f64, Option<f64>)>; 3],
@@ -42,7 +43,8 @@ pub fn sensitivity(cases: &Frame, realizations: &Frame) -> Result<Option<Drawing
     let (width, foot) = (left + QUANTITIES.len() as f64 * (COLUMN + GAP), 14.0 + rows.len() as f64 * ROW);
     let mut svg = format!(
         "<svg viewBox=\"0 0 {width:.1} {0:.1}\" xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.1}\" height=\"{0:.1}\" \
-         font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
+         font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\"><rect \
+              width=\"100%\" height=\"100%\" fill=\"white\"/>",
         foot + 44.0
     );
     for (k, row) in rows.iter().enumerate() {
@@ -60,8 +62,11 @@ pub fn sensitivity(cases: &Frame, realizations: &Frame) -> Result<Option<Drawing
         svg += &column(&rows, place, symbol, (left + place as f64 * (COLUMN + GAP), foot));
     }
     svg += "</svg>";
-    let shown =
-        if all > rows.len() { format!("the {} cases with the largest differences of {all}", rows.len()) } else { format!("{all} cases") };
+    let shown = if all > rows.len() {
+        format!("the {} cases with the largest differences of {all}", rows.len())
+    } else {
+        format!("{all} cases")
+    };
     let caption = format!(
         "Relative differences of the means from the reference case ({reference}) at the same load, {shown}: contact area A, pull-off force F_po and dissipated \
          energy Θ. Lines: 95 % confidence interval. Data: statistics/cases.parquet and realizations.parquet (area_at_max_load, pull_off_load, loss)."
@@ -76,7 +81,9 @@ fn rows(cases: &Frame, realizations: &Frame) -> Result<(Vec<Row>, Option<String>
     let texts = labels(&loads);
     let many = loads.windows(2).any(|pair| pair[0] != pair[1]);
     let mut rows = Vec::new();
-    for (listed, reference) in list.rows.iter().filter_map(|listed| listed.reference.map(|reference| (listed, reference))) {
+    for (listed, reference) in
+        list.rows.iter().filter_map(|listed| listed.reference.map(|reference| (listed, reference)))
+    {
         let mut changes = [None; 3];
         for (change, (_, name)) in changes.iter_mut().zip(QUANTITIES) {
             *change = difference_of(cases, realizations, [listed.row, reference], name)?.and_then(percent);
@@ -96,12 +103,16 @@ fn percent(of: Difference) -> Option<(f64, Option<f64>)> {
 /// The bars of a quantity above their axis.
 fn column(rows: &[Row], place: usize, symbol: &str, (left, foot): (f64, f64)) -> String {
     let changes = || rows.iter().map(|row| row.changes[place]);
-    let ends = changes().flatten().flat_map(|(change, half)| [change - half.unwrap_or(0.0), change, change + half.unwrap_or(0.0)]);
+    let ends = changes()
+        .flatten()
+        .flat_map(|(change, half)| [change - half.unwrap_or(0.0), change, change + half.unwrap_or(0.0)]);
     let axis = Axis::holding(&format!("change of {symbol} [%]"), ends.chain([0.0]), false);
     let (low, high) = axis.drawn_range();
     let at = |value: f64| left + COLUMN * (axis.drawn(value) - low) / (high - low);
     let mut svg = String::new();
-    for (k, (change, half)) in changes().enumerate().filter_map(|(k, change)| change.map(|change| (k, change))) {
+    for (k, (change, half)) in
+        changes().enumerate().filter_map(|(k, change)| change.map(|change| (k, change)))
+    {
         let y = 14.0 + (k as f64 + 0.5) * ROW;
         let (from, to) = (at(change.min(0.0)), at(change.max(0.0)));
         let _ = write!(
@@ -133,7 +144,8 @@ fn column(rows: &[Row], place: usize, symbol: &str, (left, foot): (f64, f64)) ->
         let x = left + COLUMN * (tick - low) / (high - low);
         let _ = write!(
             svg,
-            "<path d=\"M{x:.1} {foot:.1}v4\" stroke=\"black\"/><text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"12\" text-anchor=\"middle\">{}</text>",
+            "<path d=\"M{x:.1} {foot:.1}v4\" stroke=\"black\"/><text x=\"{x:.1}\" y=\"{:.1}\" \
+             font-size=\"12\" text-anchor=\"middle\">{}</text>",
             foot + 17.0,
             axis.tick_label(tick)
         );

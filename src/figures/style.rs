@@ -2,7 +2,8 @@
 
 use super::curve::{Curve, KeyEntry, Stroke};
 
-/// Colours of cases, distinct with any colour vision (Okabe and Ito); yellow is left out, since it is too pale on white.
+/// Colours of cases, distinct with any colour vision (Okabe and Ito); yellow is left out, since it is too
+/// pale on white.
 const PALETTE: [[u8; 3]; 7] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],
@@ -27,11 +28,13 @@ pub(super) const MOST_NOTES: usize = 14;
 /// A hue, the lighter the earlier of several.
 pub(super) fn shade(hue: [u8; 3], at: usize, of: usize) -> String {
     let white = if of < 2 { 0.0 } else { 0.4 * (of - 1 - at) as f64 / (of - 1) as f64 };
-    let [red, green, blue] = hue.map(|part| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8);
+    let [red, green, blue] =
+        hue.map(|part| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8);
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// The colour of a case by its place, and of one of its loads: the lighter the lower. After the last colour of the palette they begin again, darker.
+/// The colour of a case by its place, and of one of its loads: the lighter the lower. After the last colour
+/// of the palette they begin again, darker.
 pub(super) fn case_colour(place: usize, load: usize, loads: usize) -> String {
     let hue = PALETTE[place % PALETTE.len()];
     let dark = 0.6_f64.powi((place / PALETTE.len()) as i32);
@@ -39,10 +42,27 @@ pub(super) fn case_colour(place: usize, load: usize, loads: usize) -> String {
 }
 
 /// A curve without errors, of something and by its name.
-pub(super) fn curve((name, of): (&str, &str), points: Vec<(f64, f64)>, colour: String, stroke: Stroke) -> Curve {
+pub(super) fn curve(
+    (name, of): (&str, &str),
+    points: Vec<(f64, f64)>,
+    colour: String,
+    stroke: Stroke,
+) -> Curve {
     let [name, of] = [name, of].map(str::to_owned);
     let mark_colours = Vec::new();
-    Curve { name, of, points, errors: Vec::new(), band: false, positive: false, colour, mark_colours, stroke, joined: true, marked: false }
+    Curve {
+        name,
+        of,
+        points,
+        errors: Vec::new(),
+        band: false,
+        positive: false,
+        colour,
+        mark_colours,
+        stroke,
+        joined: true,
+        marked: false,
+    }
 }
 
 pub(super) fn entry(text: &str, hue: [u8; 3], stroke: Option<Stroke>, marked: bool) -> KeyEntry {

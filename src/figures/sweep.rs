@@ -49,7 +49,8 @@ impl Sweep {
     pub(super) fn find(cases: &Frame, name: &str) -> Result<Self, FigureError> {
         let sweeps = cases.text("sweep")?;
         let belongs = |joined: &&str| joined.split('+').any(|one| one == name);
-        let rows: Vec<usize> = sweeps.iter().enumerate().filter(|(_, joined)| belongs(joined)).map(|(row, _)| row).collect();
+        let rows: Vec<usize> =
+            sweeps.iter().enumerate().filter(|(_, joined)| belongs(joined)).map(|(row, _)| row).collect();
         if rows.is_empty() {
             let mut known: Vec<&str> = sweeps.iter().flat_map(|joined| joined.split('+')).collect();
             known.sort_unstable();
@@ -60,7 +61,9 @@ impl Sweep {
         let area = cases.f64_or_null("area_at_max_load_mean")?;
         let differing = varying(cases, &rows)?;
         let load_of = |row: usize| loads.get(row).copied().unwrap_or_default();
-        let many_loads = rows.windows(2).any(|pair| pair.first().map(|row| load_of(*row)) != pair.last().map(|row| load_of(*row)));
+        let many_loads = rows
+            .windows(2)
+            .any(|pair| pair.first().map(|row| load_of(*row)) != pair.last().map(|row| load_of(*row)));
         let words = words(&differing);
         let mut members = Vec::new();
         let load_labels = labels(&rows.iter().map(|row| load_of(*row)).collect::<Vec<f64>>());
@@ -68,13 +71,17 @@ impl Sweep {
             let load = load_of(*row);
             let x = match differing.first().map(|first| &first.values) {
                 Some(Values::Numbers(numbers)) => numbers.get(place).copied().flatten(),
-                Some(Values::Words(all)) => {
-                    all.get(place).and_then(|word| words.iter().position(|known| known == word)).map(|at| at as f64)
-                }
+                Some(Values::Words(all)) => all
+                    .get(place)
+                    .and_then(|word| words.iter().position(|known| known == word))
+                    .map(|at| at as f64),
                 None => area.get(*row).copied().flatten(),
             };
             let said = |of: &[Varying]| -> Vec<String> {
-                of.iter().filter(|parameter| !parameter.is_absent(place)).map(|parameter| parameter.named(place)).collect()
+                of.iter()
+                    .filter(|parameter| !parameter.is_absent(place))
+                    .map(|parameter| parameter.named(place))
+                    .collect()
             };
             let (mut parts, mut series) = (said(&differing), said(differing.get(1..).unwrap_or_default()));
             if many_loads {
@@ -102,7 +109,12 @@ impl Sweep {
         let order = |member: &Member| {
             if differing.is_empty() { member.max_load } else { member.x }
         };
-        members.sort_by(|a, b| order(a).total_cmp(&order(b)).then(a.max_load.total_cmp(&b.max_load)).then(a.case_id.cmp(&b.case_id)));
+        members.sort_by(|a, b| {
+            order(a)
+                .total_cmp(&order(b))
+                .then(a.max_load.total_cmp(&b.max_load))
+                .then(a.case_id.cmp(&b.case_id))
+        });
         let axis = axis(&differing, words, &members);
         colour(&mut members, differing.is_empty());
         Ok(Self { members, differing, many_loads, axis })
@@ -161,14 +173,18 @@ fn words(differing: &[Varying]) -> Vec<String> {
 
 fn axis(differing: &[Varying], words: Vec<String>, members: &[Member]) -> Axis {
     let values: Vec<f64> = members.iter().map(|member| member.x).filter(|x| x.is_finite()).collect();
-    let (least, most) = (values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max));
+    let (least, most) =
+        (values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max));
     match differing.first() {
         None => Axis::holding("A/A_{0}", values, true).with_headroom(0.05),
-        Some(first) if matches!(first.values, Values::Words(_)) => {
-            Axis::of_words(first.label, words.into_iter().map(|word| if word.is_empty() { "none".to_owned() } else { word }).collect())
-        }
+        Some(first) if matches!(first.values, Values::Words(_)) => Axis::of_words(
+            first.label,
+            words.into_iter().map(|word| if word.is_empty() { "none".to_owned() } else { word }).collect(),
+        ),
         // A magnification counts doublings of resolution: equal steps of it are equal ratios.
-        Some(first) if first.name == "magnification" && most >= 2.0 * least => Axis::of_doublings(first.label, values),
+        Some(first) if first.name == "magnification" && most >= 2.0 * least => {
+            Axis::of_doublings(first.label, values)
+        }
         Some(first) => Axis::holding(first.label, values, false),
     }
 }

@@ -27,7 +27,9 @@ pub fn table(panels: &[(String, Panel)]) -> Result<Frame, FrameError> {
     let mut rows = Vec::new();
     for (sweep, panel) in panels {
         // An area between two curves is no result of its own.
-        for (number, curve) in panel.plot.curves.iter().enumerate().filter(|(_, curve)| curve.stroke != Stroke::Area) {
+        for (number, curve) in
+            panel.plot.curves.iter().enumerate().filter(|(_, curve)| curve.stroke != Stroke::Area)
+        {
             rows.extend((0..curve.points.len()).map(|point| Row { sweep, panel, curve: number, point }));
         }
     }

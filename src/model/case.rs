@@ -1,8 +1,8 @@
 //! Parameters of a case: surface, material, method and loading path.
 
 use super::{
-    Amplitudes, AttractionKind, Boundary, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn, KeptContacts, Material, Method,
-    Missing, Normalization, Nucleation, Opening, Slip, Slips,
+    Amplitudes, AttractionKind, Boundary, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn,
+    KeptContacts, Material, Method, Missing, Normalization, Nucleation, Opening, Slip, Slips,
 };
 use crate::physics::surface::spectrum::Spectrum;
 use serde::Serialize;
@@ -16,7 +16,8 @@ pub struct CaseParams {
     pub material: Material,
     /// The method and its options.
     pub method: MethodOptions,
-    /// Uncorrected equations of the paper, sorted, each once. Boundary elements have those of analytical estimates alone.
+    /// Uncorrected equations of the paper, sorted, each once. Boundary elements have those of analytical
+    /// estimates alone.
     pub as_printed: Vec<Slip>,
     /// The loading and unloading path.
     pub cycle: LoadingPath,
@@ -346,7 +347,13 @@ impl Default for AsperityOptions {
 
 impl Default for ElementOptions {
     fn default() -> Self {
-        Self { points: None, attraction: Attraction::default(), approach_step: 0.03, halvings: 6, precision: 1e-4 }
+        Self {
+            points: None,
+            attraction: Attraction::default(),
+            approach_step: 0.03,
+            halvings: 6,
+            precision: 1e-4,
+        }
     }
 }
 

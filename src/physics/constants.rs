@@ -1,6 +1,7 @@
 //! Tolerances and limits of the program, as rows of tables.
 //!
-//! Each module lists its own constants next to their use. The reference page `reference_limits.md` is written from these lists.
+//! Each module lists its own constants next to their use. The reference page `reference_limits.md` is written
+//! from these lists.
 
 /// A tolerance or limit that no key of a spec changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +32,13 @@ pub struct Constants {
 impl Constant {
     /// A constant of a submodule.
     #[must_use]
-    pub const fn new(name: &'static str, values: &'static [f64], unit: &'static str, meaning: &'static str, module: &'static str) -> Self {
+    pub const fn new(
+        name: &'static str,
+        values: &'static [f64],
+        unit: &'static str,
+        meaning: &'static str,
+        module: &'static str,
+    ) -> Self {
         Self { name, values, unit, meaning, module }
     }
 

@@ -29,12 +29,14 @@ pub enum PhysicsError {
     },
     /// A surface without asperities.
     #[error(
-        "the surface has no asperity: no local maximum with positive mean curvature\nhelp: use a larger surface or a smaller S-filter cut-off"
+        "the surface has no asperity: no local maximum with positive mean curvature\nhelp: use a larger \
+         surface or a smaller S-filter cut-off"
     )]
     NoSummit,
     /// Asperities with a Tabor parameter below the limit of Wu's criterion.
     #[error(
-        "Wu's criterion for jump into contact (Eq 3) is invalid: {below} of {all} asperities have a Tabor parameter below 2 (minimum {smallest:.3})"
+        "Wu's criterion for jump into contact (Eq 3) is invalid: {below} of {all} asperities have a Tabor \
+         parameter below 2 (minimum {smallest:.3})"
     )]
     LowTabor {
         /// Minimum Tabor parameter.
@@ -46,7 +48,8 @@ pub enum PhysicsError {
     },
     /// A stored state with an asperity that the surface does not have.
     #[error(
-        "cannot restore the state: it contains asperity {asperity}, but the surface has {count} asperities\nhelp: use a state of the same surface"
+        "cannot restore the state: it contains asperity {asperity}, but the surface has {count} \
+         asperities\nhelp: use a state of the same surface"
     )]
     UnknownAsperity {
         /// The number of the asperity.
@@ -64,7 +67,8 @@ pub enum PhysicsError {
 pub enum LoopError {
     /// No equilibrium was found near the last one, not even by relaxation.
     #[error(
-        "no equilibrium at the mean penetration {mean_penetration_m:e} m after {iterations} iterations: {} (asperity {asperity})",
+        "no equilibrium at the mean penetration {mean_penetration_m:e} m after {iterations} iterations: {} \
+         (asperity {asperity})",
         reason.sentence(*residual_m)
     )]
     NoEquilibrium {
@@ -80,7 +84,10 @@ pub enum LoopError {
         iterations: u64,
     },
     /// Events go on without end within one increment of the mean penetration.
-    #[error("no stable state at the mean penetration {mean_penetration_m:e} m after {events} changes of state (asperity {asperity} last)")]
+    #[error(
+        "no stable state at the mean penetration {mean_penetration_m:e} m after {events} changes of state \
+         (asperity {asperity} last)"
+    )]
     EndlessAvalanche {
         /// Mean penetration Δ \[m\].
         mean_penetration_m: f64,
@@ -90,13 +97,19 @@ pub enum LoopError {
         asperity: usize,
     },
     /// Full contact at a load reversal, with bonds that open at edges only.
-    #[error("full contact at the mean penetration {mean_penetration_m:e} m: there is no edge from which the surfaces can separate")]
+    #[error(
+        "full contact at the mean penetration {mean_penetration_m:e} m: there is no edge from which the \
+         surfaces can separate"
+    )]
     Closed {
         /// Mean penetration Δ \[m\].
         mean_penetration_m: f64,
     },
     /// Surfaces that stay in contact on unloading.
-    #[error("the surfaces have not separated at the mean penetration {mean_penetration_m:e} m, 20 ranges of the heights away")]
+    #[error(
+        "the surfaces have not separated at the mean penetration {mean_penetration_m:e} m, 20 ranges of the \
+         heights away"
+    )]
     Inseparable {
         /// Mean penetration Δ \[m\].
         mean_penetration_m: f64,
@@ -115,7 +128,10 @@ pub enum LoopError {
         load_before_n: f64,
     },
     /// A loop with negative dissipated energy.
-    #[error("negative dissipated energy of the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J ({fraction:.1e} of the work of loading)")]
+    #[error(
+        "negative dissipated energy of the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J ({fraction:.1e} \
+         of the work of loading)"
+    )]
     NegativeDissipation {
         /// F/(E* A0) at the load reversal; not a number under displacement control.
         max_load: f64,
@@ -125,7 +141,10 @@ pub enum LoopError {
         fraction: f64,
     },
     /// The sum of the event energies differs from the loop area.
-    #[error("energy-balance error above half of Θ in the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J")]
+    #[error(
+        "energy-balance error above half of Θ in the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum \
+         over events {events_j:e} J"
+    )]
     EnergyImbalance {
         /// F/(E* A0) at the load reversal; not a number under displacement control.
         max_load: f64,
@@ -136,7 +155,8 @@ pub enum LoopError {
     },
     /// A loop by boundary elements whose steps do not resolve its dissipated energy.
     #[error(
-        "the steps do not resolve the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events {events_j:e} J, work of loading {work_j:e} J"
+        "the steps do not resolve the loop to F/(E* A0) = {max_load}: Θ = {loss_j:e} J, sum over events \
+         {events_j:e} J, work of loading {work_j:e} J"
     )]
     UnresolvedLoop {
         /// F/(E* A0) at the load reversal.
@@ -149,7 +169,10 @@ pub enum LoopError {
         work_j: f64,
     },
     /// The maximum load is not reached.
-    #[error("load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration {mean_penetration_m:e} m")]
+    #[error(
+        "load F/(E* A0) = {wanted} not reached: it is {reached} at the mean penetration \
+         {mean_penetration_m:e} m"
+    )]
     LoadNotReached {
         /// The requested load.
         wanted: f64,

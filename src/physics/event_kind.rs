@@ -1,9 +1,11 @@
-//! Kinds of events of a loop, for both methods: word, name and group of each in one table, which all other code reads.
+//! Kinds of events of a loop, for both methods: word, name and group of each in one table, which all other
+//! code reads.
 //!
-//! A further kind takes a variant with its row here, in [`EventKind`]. In the physics the compiler names the other
-//! places: its condition (`path::conditions`), its application (`path::apply`) and the status that it enters
-//! (`path::propagation`). Outside it takes one row in `schema::event_kinds`, with its columns and its colour: tables,
-//! statistics, report and explorer follow from it.
+//! A further kind takes a variant with its row here, in
+//! [`EventKind`]. In the physics the compiler names the other places: its condition (`path::conditions`), its
+//! application (`path::apply`) and the status that it enters (`path::propagation`). Outside it takes one row
+//! in `schema::event_kinds`, with its columns and its colour: tables, statistics, report and explorer follow
+//! from it.
 
 use serde::{Deserialize, Serialize};
 use std::ops::Index;
@@ -19,8 +21,8 @@ pub enum EventKind {
     Cover,
     /// The absorbing spot has withdrawn, and the asperity is released.
     Uncover,
-    /// Snap-through at a limit point of the coupled state: same contacts, new equilibrium. In the code also a change of a local problem without a
-    /// change of status, such as the response to a pending displacement.
+    /// Snap-through at a limit point of the coupled state: same contacts, new equilibrium. In the code also a
+    /// change of a local problem without a change of status, such as the response to a pending displacement.
     Snap,
     /// Two overlapping spots merge.
     Merge,
@@ -51,7 +53,8 @@ impl EventGroup {
 
 impl EventKind {
     /// All kinds, in the order of the tables.
-    pub const ALL: [Self; 7] = [Self::JumpIn, Self::JumpOff, Self::Cover, Self::Uncover, Self::Snap, Self::Merge, Self::Split];
+    pub const ALL: [Self; 7] =
+        [Self::JumpIn, Self::JumpOff, Self::Cover, Self::Uncover, Self::Snap, Self::Merge, Self::Split];
 
     /// Words of all kinds, in that order.
     pub const WORDS: [&'static str; Self::ALL.len()] = {
@@ -163,7 +166,8 @@ pub enum RegionChange {
 
 impl RegionChange {
     /// All kinds.
-    pub const ALL: [Self; 6] = [Self::Formed, Self::Lost, Self::Joined, Self::Parted, Self::Grown, Self::Shrunk];
+    pub const ALL: [Self; 6] =
+        [Self::Formed, Self::Lost, Self::Joined, Self::Parted, Self::Grown, Self::Shrunk];
 
     /// Word in the tables.
     #[must_use]
@@ -246,7 +250,9 @@ mod tests {
     fn law_counts_are_those_of_their_kind() {
         assert!(EventKind::ALL.iter().enumerate().all(|(place, kind)| *kind as usize == place));
         let counts: EventCounts = EventKind::ALL.into_iter().chain([EventKind::Snap]).collect();
-        assert!(EventKind::ALL.iter().all(|kind| counts[*kind] == if *kind == EventKind::Snap { 2 } else { 1 }));
+        assert!(
+            EventKind::ALL.iter().all(|kind| counts[*kind] == if *kind == EventKind::Snap { 2 } else { 1 })
+        );
         assert_eq!(counts.sum(), EventKind::ALL.len() + 1);
     }
 }

@@ -1,21 +1,23 @@
 //! JKR equations of one asperity: a rigid paraboloid of radius R on a soft half-space.
 //!
-//! Source: Violano & Afferrante, Lubricants 9(1):7 (2021), Eqs 1–4 and A1; Johnson, Kendall & Roberts, Proc. R. Soc. A 324:301 (1971).
-//! Symbols: contact radius `a` \[m\], penetration `δ` \[m\] (positive inwards), load `F` \[N\] (positive in compression),
-//! radius of curvature `R` \[m\], reduced modulus `E*` \[Pa\], work of adhesion `Δγ` \[J/m²\].
+//! Source: Violano & Afferrante, Lubricants 9(1):7 (2021), Eqs 1–4 and A1; Johnson, Kendall & Roberts, Proc.
+//! R. Soc. A 324:301 (1971). Symbols: contact radius `a` \[m\], penetration `δ` \[m\] (positive inwards),
+//! load `F` \[N\] (positive in compression), radius of curvature `R` \[m\], reduced modulus
+//! `E*` \[Pa\], work of adhesion `Δγ` \[J/m²\].
 //!
 //! In units `a: (R²Δγ/E*)^⅓`, `δ: (RΔγ²/E*²)^⅓`, `F: RΔγ` all asperities have the same curves.
 //!
 //! # Without adhesion
-//! At `Δγ = 0` Eqs 1 and 2 are those of Hertz. The branch then ends at `a = 0`, where `dδ/da` vanishes and Newton's method fails.
-//! Contact therefore begins and ends at `a_off =` [`HERTZ_EDGE`] `R`, where the penetration is `1e-10 R` and the load `(4/3)·1e-15 E*R²`.
+//! At `Δγ = 0` Eqs 1 and 2 are those of Hertz. The branch then ends at `a = 0`, where
+//! `dδ/da` vanishes and Newton's method fails. Contact therefore begins and ends at `a_off =` [`HERTZ_EDGE`]
+//! `R`, where the penetration is `1e-10 R` and the load `(4/3)·1e-15 E*R²`.
 //!
 //! # Erratum in Eq 9
-//! The denominator of Eq 9 is the slope dδ/da of Eq 2, printed as `2a/R − sqrt(πΔγ/(E*a))`.
-//! Eq 9 is only an iteration to the equilibrium, which does not depend on this slope. The end of the branch does: it is
-//! where the slope vanishes, with the printed slope at `a = (πR²Δγ/(4E*))^⅓ = 2^⅓ a_off`.
-//! With the printed equation ([`Asperity::as_printed`]) a spot's branch ends there and the spot leaves contact, at a
-//! penetration that is 3 % less deep than `δ_off`. The printed Eq 4 for `δ_off` is right, so the two do not agree.
+//! The denominator of Eq 9 is the slope dδ/da of Eq 2, printed as `2a/R − sqrt(πΔγ/(E*a))`. Eq 9 is only an
+//! iteration to the equilibrium, which does not depend on this slope. The end of the branch does: it is where
+//! the slope vanishes, with the printed slope at `a = (πR²Δγ/(4E*))^⅓ = 2^⅓ a_off`. With the printed equation
+//! ([`Asperity::as_printed`]) a spot's branch ends there and the spot leaves contact, at a penetration that is 3 % less deep than `δ_off`.
+//! The printed Eq 4 for `δ_off` is right, so the two do not agree.
 
 use crate::PhysicsError;
 use crate::constants::Constant;
@@ -73,22 +75,33 @@ impl Asperity {
 
     /// Asperity with the end of the branch by Eq 9 as printed, if `slips` contains it.
     ///
-    /// See the head of this module.
-    /// It changes only [`Self::jump_off_radius`], [`Self::jump_off_penetration`], [`Self::loop_loss_from`] and the domain of
-    /// [`Self::radius_at_penetration`].
+    /// See the head of this module. It changes only
+    /// [`Self::jump_off_radius`], [`Self::jump_off_penetration`],
+    /// [`Self::loop_loss_from`] and the domain of [`Self::radius_at_penetration`].
     ///
     /// # Errors
     /// As [`Self::new`].
     pub fn as_printed(radius_m: f64, material: &Material, slips: Slips) -> Result<Self, PhysicsError> {
         let (modulus, adhesion) = (material.contact_modulus_pa, material.work_of_adhesion_j_m2);
-        let refused = |quantity, value, allowed| PhysicsError::Domain { action: "a JKR asperity", quantity, value, allowed };
-        for (quantity, value) in [("the radius of curvature [m]", radius_m), ("the contact modulus [Pa]", modulus)] {
+        let refused = |quantity, value, allowed| PhysicsError::Domain {
+            action: "a JKR asperity",
+            quantity,
+            value,
+            allowed,
+        };
+        for (quantity, value) in
+            [("the radius of curvature [m]", radius_m), ("the contact modulus [Pa]", modulus)]
+        {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(refused(quantity, value, "a positive, finite number"));
             }
         }
         if !(adhesion >= 0.0 && adhesion.is_finite()) {
-            return Err(refused("the work of adhesion [J/m2]", adhesion, "zero or a positive, finite number"));
+            return Err(refused(
+                "the work of adhesion [J/m2]",
+                adhesion,
+                "zero or a positive, finite number",
+            ));
         }
         if adhesion == 0.0 {
             return Ok(Self::hertz(radius_m, modulus));
@@ -96,7 +109,8 @@ impl Asperity {
         let pull_squared = 2.0 * PI * adhesion / modulus;
         let fold_radius = (pull_squared * radius_m * radius_m / 16.0).cbrt();
         // In units of a_off and a_off²/R Eq 2 is κ² − 4 sqrt(κ).
-        let (stretch, depth) = if slips.eq9 { (2f64.cbrt(), 4.0 * 2f64.cbrt().sqrt() - 4f64.cbrt()) } else { (1.0, 3.0) };
+        let (stretch, depth) =
+            if slips.eq9 { (2f64.cbrt(), 4.0 * 2f64.cbrt().sqrt() - 4f64.cbrt()) } else { (1.0, 3.0) };
         Ok(Self {
             radius: radius_m,
             modulus,
@@ -112,7 +126,15 @@ impl Asperity {
     fn hertz(radius: f64, modulus: f64) -> Self {
         let jump_off_radius = HERTZ_EDGE * radius;
         let jump_off_penetration = jump_off_radius * HERTZ_EDGE;
-        Self { radius, modulus, adhesion: 0.0, pull: 0.0, fold_radius: 0.0, jump_off_radius, jump_off_penetration }
+        Self {
+            radius,
+            modulus,
+            adhesion: 0.0,
+            pull: 0.0,
+            fold_radius: 0.0,
+            jump_off_radius,
+            jump_off_penetration,
+        }
     }
 
     /// Radius of curvature R \[m\].
@@ -147,7 +169,8 @@ impl Asperity {
         a * a / self.radius - self.pull * a.sqrt()
     }
 
-    /// `dδ/da = 2a/R − sqrt(πΔγ/(2E*a))` (dimensionless), at contact radius `a > 0` \[m\]. Derivative of Eq 2.
+    /// `dδ/da = 2a/R − sqrt(πΔγ/(2E*a))` (dimensionless), at contact radius `a > 0` \[m\]. Derivative of Eq
+    /// 2.
     ///
     /// # Deviations
     /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`,
@@ -168,7 +191,8 @@ impl Asperity {
 
     /// Penetration at jump-off `δ_off = −(27π²Δγ²R/(64E*²))^⅓` \[m\]. Eq 4.
     ///
-    /// With Eq 9 as printed it is Eq 2 at the jump-off radius, which is `(4·2^(1/6) − 2^(2/3))/3 = 0.9675` of it.
+    /// With Eq 9 as printed it is Eq 2 at the jump-off radius, which is `(4·2^(1/6) − 2^(2/3))/3 = 0.9675` of
+    /// it.
     #[must_use]
     pub fn jump_off_penetration(&self) -> f64 {
         self.jump_off_penetration
@@ -190,16 +214,18 @@ impl Asperity {
     ///
     /// `None` below the jump-off penetration.
     ///
-    /// With `a = a_off(1 + e)²` Eq 2 reads `6e² + 4e³ + e⁴ = (δ − δ_off)/(a_off²/R)`, whose left side is convex.
-    /// Newton's method from above converges from any start, and the root is accurate down to the jump-off itself.
+    /// With `a = a_off(1 + e)²` Eq 2 reads `6e² + 4e³ + e⁴ = (δ − δ_off)/(a_off²/R)`, whose left side is
+    /// convex. Newton's method from above converges from any start, and the root is accurate down to the
+    /// jump-off itself.
     #[must_use]
     pub fn radius_at_penetration(&self, penetration: f64) -> Option<f64> {
         let [radius] = Self::radii_at_penetrations([self], [penetration]);
         radius.is_finite().then_some(radius)
     }
 
-    /// [`Self::radius_at_penetration`] of several asperities at once, each at its penetration \[m\]; not finite below the end of the branch. Divisions of one
-    /// asperity wait for one another, those of several do not.
+    /// [`Self::radius_at_penetration`] of several asperities at once, each at its penetration \[m\]; not
+    /// finite below the end of the branch. Divisions of one asperity wait for one another, those of several
+    /// do not.
     fn radii_at_penetrations<const N: usize>(asperities: [&Self; N], penetrations: [f64; N]) -> [f64; N] {
         let excess: [f64; N] = std::array::from_fn(|k| {
             let (off, radius) = (asperities[k].fold_radius, asperities[k].radius);
@@ -248,7 +274,8 @@ impl Asperity {
     /// Wu's jump-in penetration `δ_in = (1 − 2.641 μ^(3/7)) ε` \[m\], valid for `μ ≥ 2`. Eq 3.
     ///
     /// # Deviations
-    /// This penetration is negative: contact forms where the gap falls below `|δ_in|`, not below `δ_in` as §2.2 says.
+    /// This penetration is negative: contact forms where the gap falls below `|δ_in|`, not below `δ_in` as
+    /// §2.2 says.
     #[must_use]
     pub fn wu_jump_in_penetration(&self, range: f64) -> f64 {
         (1.0 - 2.641 * self.tabor(range).powf(3.0 / 7.0)) * range
@@ -259,7 +286,8 @@ impl Asperity {
     /// `θ = 2E*R³ (πΔγ/(E*R))^(5/3) × 0.5262…`. Eq A1.
     ///
     /// # Deviations
-    /// The constant is exact here, `2^⅔ (3/10 + (1/5) 16^(−⅔))`. The paper prints 0.5262. Eq 9 as printed has no effect.
+    /// The constant is exact here, `2^⅔ (3/10 + (1/5) 16^(−⅔))`. The paper prints 0.5262. Eq 9 as printed has
+    /// no effect.
     #[must_use]
     pub fn loop_loss(&self) -> f64 {
         let ratio = PI * self.adhesion / (self.modulus * self.radius);
@@ -268,11 +296,12 @@ impl Asperity {
 
     /// Dissipated energy \[J\] of a loop with jump-in at `jump_in` \[m\], `δ_off ≤ jump_in ≤ 0`.
     ///
-    /// It is the decrease of `U − Δγπa²` in the two jumps. `None` if the jump-in is below the end of the branch.
-    /// The loop ends where the branch ends.
+    /// It is the decrease of `U − Δγπa²` in the two jumps. `None` if the jump-in is below the end of the
+    /// branch. The loop ends where the branch ends.
     #[must_use]
     pub fn loop_loss_from(&self, jump_in: f64) -> Option<f64> {
-        let energy = |penetration: f64, a: f64| self.stored_energy(penetration, a) - PI * self.adhesion * a * a;
+        let energy =
+            |penetration: f64, a: f64| self.stored_energy(penetration, a) - PI * self.adhesion * a * a;
         let landed = self.radius_at_penetration(jump_in)?;
         Some(energy(self.jump_off_penetration(), self.jump_off_radius) - energy(jump_in, landed))
     }
@@ -313,18 +342,27 @@ mod tests {
 
     #[test]
     fn law_radii_of_several_asperities_are_those_of_each() {
-        let adhesive = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
+        let adhesive =
+            Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
         let elastic = Material { work_of_adhesion_j_m2: 0.0, ..adhesive };
         let of = |(radius, material)| Asperity::new(radius, material).ok();
-        let all: Vec<Asperity> = [(2e-5, &adhesive), (3e-4, &adhesive), (1e-4, &elastic)].into_iter().filter_map(of).collect();
+        let all: Vec<Asperity> =
+            [(2e-5, &adhesive), (3e-4, &adhesive), (1e-4, &elastic)].into_iter().filter_map(of).collect();
         let asperities: [&Asperity; 6] = std::array::from_fn(|k| &all[k % 3]);
         let off = all[0].jump_off_penetration();
         // On the branch, at its end, below it, and no number.
         let penetrations = [off, 2e-6, 1e-7, 1.01 * off, f64::NAN, -1e-9];
         let together = Asperity::radii_ahead(asperities, penetrations);
         for ((asperity, penetration), radius) in asperities.iter().zip(penetrations).zip(together) {
-            assert_eq!(radius, asperity.radius_at_penetration(penetration).unwrap_or(asperity.jump_off_radius()), "{penetration}");
+            assert_eq!(
+                radius,
+                asperity.radius_at_penetration(penetration).unwrap_or(asperity.jump_off_radius()),
+                "{penetration}"
+            );
         }
-        assert_eq!(together[3..], [all[0].jump_off_radius(), all[1].jump_off_radius(), all[2].jump_off_radius()]);
+        assert_eq!(
+            together[3..],
+            [all[0].jump_off_radius(), all[1].jump_off_radius(), all[2].jump_off_radius()]
+        );
     }
 }

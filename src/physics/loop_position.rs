@@ -3,7 +3,8 @@
 /// Position that a computation of a loop has reached.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LoopPosition {
-    /// Finished fraction of the loop, 0 to 1. It follows the load while loading and the contact area while unloading, and is no fraction of the run time.
+    /// Finished fraction of the loop, 0 to 1. It follows the load while loading and the contact area while
+    /// unloading, and is no fraction of the run time.
     pub done: f64,
     /// Number of finished steps.
     pub steps: usize,

@@ -27,7 +27,11 @@ pub fn check(bytes: usize) -> Result<(), PhysicsError> {
 
 fn short(bytes: usize) -> PhysicsError {
     PhysicsError::Surface {
-        problem: format!("a surface of this size needs another {:.2} GB of memory, which are not free", bytes as f64 / 1e9),
-        help: "run fewer tasks at once (--jobs 1), raise the memory limit (ulimit -v, h_vmem), or use fewer points",
+        problem: format!(
+            "a surface of this size needs another {:.2} GB of memory, which are not free",
+            bytes as f64 / 1e9
+        ),
+        help: "run fewer tasks at once (--jobs 1), raise the memory limit (ulimit -v, h_vmem), or use fewer \
+             points",
     }
 }

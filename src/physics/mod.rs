@@ -1,8 +1,9 @@
 //! Adhesive contact of rough surfaces: loading, unloading, and the energy that is dissipated in between.
 //!
-//! Three calls of a library user: a surface ([`surface`]), a method on it ([`asperities::Asperities`] or [`elements::Elements`]), and its
-//! [`run`](cycle::Method::run), which returns a [`cycle::Cycle`]. All quantities are in SI units; compression and penetration are positive. The crate opens no
-//! files. Every method implements [`cycle::Method`]. The numerical choices of each, [`asperities::Numerics`] and [`elements::Numerics`], are options with a
+//! Three calls of a library user: a surface ([`surface`]), a method on it ([`asperities::Asperities`] or
+//! [`elements::Elements`]), and its [`run`](cycle::Method::run), which returns a
+//! [`cycle::Cycle`]. All quantities are in SI units; compression and penetration are positive. The crate opens no files. Every method implements [`cycle::Method`].
+//! The numerical choices of each, [`asperities::Numerics`] and [`elements::Numerics`], are options with a
 //! default; their fields state their effect.
 //!
 //! # A loop of the asperity model
@@ -33,7 +34,8 @@
 //! ```
 //!
 //! # A loop by boundary elements
-//! A measured height map that is not periodic is continued by its mirror images; loads, areas and energies are those of the map.
+//! A measured height map that is not periodic is continued by its mirror images; loads, areas and energies
+//! are those of the map.
 //! ```
 //! use hysteron_physics::cycle::Method;
 //! use hysteron_physics::elements::{Elements, Options};
@@ -97,10 +99,26 @@ pub use loop_position::LoopPosition;
 /// Tolerances and limits of the physics, by module.
 pub const CONSTANTS: [Constants; 9] = [
     Constants { subject: "Valid cycles", module: "physics::cycle", rows: cycle::CONSTANTS },
-    Constants { subject: "Path of the asperity model", module: "physics::asperities", rows: asperities::PATH },
-    Constants { subject: "Global and local problems", module: "physics::asperities", rows: asperities::SOLVERS },
-    Constants { subject: "Sums over contacts", module: "physics::asperities::field", rows: asperities::field::CONSTANTS },
-    Constants { subject: "Contacts", module: "physics::asperities::contact", rows: asperities::contact::CONSTANTS },
+    Constants {
+        subject: "Path of the asperity model",
+        module: "physics::asperities",
+        rows: asperities::PATH,
+    },
+    Constants {
+        subject: "Global and local problems",
+        module: "physics::asperities",
+        rows: asperities::SOLVERS,
+    },
+    Constants {
+        subject: "Sums over contacts",
+        module: "physics::asperities::field",
+        rows: asperities::field::CONSTANTS,
+    },
+    Constants {
+        subject: "Contacts",
+        module: "physics::asperities::contact",
+        rows: asperities::contact::CONSTANTS,
+    },
     Constants { subject: "One asperity", module: "physics::jkr", rows: jkr::CONSTANTS },
     Constants { subject: "Boundary elements", module: "physics::elements", rows: elements::CONSTANTS },
     Constants { subject: "Measured surfaces", module: "physics::surface", rows: surface::CONSTANTS },

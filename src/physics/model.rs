@@ -12,7 +12,8 @@ pub struct Material {
     pub contact_modulus_pa: f64,
     /// Work of adhesion Δγ \[J/m²\].
     pub work_of_adhesion_j_m2: f64,
-    /// Range of attraction ε \[m\]; it enters the Tabor parameter, Wu's jump-in distance and the strength Δγ/ε inside contacts of boundary elements only.
+    /// Range of attraction ε \[m\]; it enters the Tabor parameter, Wu's jump-in distance and the strength
+    /// Δγ/ε inside contacts of boundary elements only.
     pub interaction_range_m: f64,
 }
 
@@ -68,14 +69,14 @@ pub trait Choice: Copy + PartialEq + Sized + 'static {
 }
 
 macro_rules! choice {
-    ($(#[$doc:meta])* $name:ident { $(#[doc = $meaning:literal] $variant:ident = $word:literal),+ $(,)? }) => {
+    ($(#[$doc:meta])* $name:ident { $($(#[doc = $meaning:literal])+ $variant:ident = $word:literal),+ $(,)? }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-        pub enum $name { $(#[doc = $meaning] #[serde(rename = $word)] $variant),+ }
+        pub enum $name { $($(#[doc = $meaning])+ #[serde(rename = $word)] $variant),+ }
 
         impl Choice for $name {
             const WORDS: &'static [(&'static str, Self)] = &[$(($word, Self::$variant)),+];
-            const MEANINGS: &'static [(&'static str, &'static str)] = &[$(($word, $meaning)),+];
+            const MEANINGS: &'static [(&'static str, &'static str)] = &[$(($word, concat!($($meaning),+))),+];
         }
     };
 }
@@ -112,7 +113,8 @@ choice! {
     Filter {
         /// Gaussian filter of ISO 16610-61: half of the amplitude of the cut-off wavelength remains.
         Gaussian = "gaussian",
-        /// Sharp cut-off: wavelengths up to the cut-off are removed, all others remain unchanged. It rings at steps.
+        /// Sharp cut-off: wavelengths up to the cut-off are removed, all others remain unchanged. It rings at
+        /// steps.
         Sharp = "sharp",
     }
 }
@@ -156,7 +158,8 @@ choice! {
         Asperities = "asperities",
         /// Boundary elements: the rough surface on a grid, with adhesion at every point.
         BoundaryElements = "boundary_elements",
-        /// The asperity model for separate contacts (`U_el/Δγ` ≥ 2, `U_1/Δγ` of the shortest octave ≥ 1, less than 0.3 of the area in contact) if it holds there, else boundary elements.
+        /// The asperity model for separate contacts (`U_el/Δγ` ≥ 2, `U_1/Δγ` of the shortest octave ≥ 1, less
+        /// than 0.3 of the area in contact) if it holds there, else boundary elements.
         Auto = "auto",
     }
 }
@@ -181,7 +184,8 @@ choice! {
 choice! {
     /// Rule for the opening of contact of boundary elements.
     Opening {
-        /// From the edges of contacts, and inside where the tension exceeds `Δγ/ε`, with the interaction range ε.
+        /// From the edges of contacts, and inside where the tension exceeds `Δγ/ε`, with the interaction
+        /// range ε.
         Strength = "strength",
         /// From the edges of contacts only.
         Edges = "edges",
@@ -234,7 +238,8 @@ choice! {
     KeptContacts {
         /// Every step.
         All = "all",
-        /// The load reversals and, while unloading, the step of maximum tensile load. With asperities also the first steps at half of each load while loading, and at zero load while unloading.
+        /// The load reversals and, while unloading, the step of maximum tensile load. With asperities also
+        /// the first steps at half of each load while loading, and at zero load while unloading.
         Turning = "turning",
         /// No step.
         None = "none",

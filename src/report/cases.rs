@@ -8,8 +8,16 @@ use crate::store::Frame;
 use maud::{Markup, html};
 
 /// Columns of energies over `E* A0 h_rms`, which share one scale in all tables.
-const ENERGIES: [&str; 8] =
-    ["loss", "loss_dk", "loss_dk_realised", "loss_touched", "loss_dalvi", "loss_pinning", "loss_jkr_curve", "dissipated"];
+const ENERGIES: [&str; 8] = [
+    "loss",
+    "loss_dk",
+    "loss_dk_realised",
+    "loss_touched",
+    "loss_dalvi",
+    "loss_pinning",
+    "loss_jkr_curve",
+    "dissipated",
+];
 
 /// Normal load at load reversal, with the markup of the figures.
 pub(super) const LOAD: &str = "F_{max}/(E*A_{0})";

@@ -50,7 +50,11 @@ pub fn comparison_page(of: &Compared<'_>) -> Result<String, StatsError> {
 }
 
 fn note(of: &Compared<'_>, labels: &[&str]) -> Markup {
-    let differing = if of.matched.differing.is_empty() { "the realizations only".to_owned() } else { of.matched.differing.join(", ") };
+    let differing = if of.matched.differing.is_empty() {
+        "the realizations only".to_owned()
+    } else {
+        of.matched.differing.join(", ")
+    };
     let left = labels.iter().zip(&of.matched.left_over).filter(|(_, count)| **count > 0);
     let left: Vec<String> = left.map(|(label, count)| format!("{count} of {label}")).collect();
     html! {
@@ -64,10 +68,14 @@ fn note(of: &Compared<'_>, labels: &[&str]) -> Markup {
 
 fn rows(of: &Compared<'_>) -> Result<Vec<Markup>, StatsError> {
     let table = of.table;
-    let (groups, campaigns, quantities) = (table.i64("group")?, table.text("campaign")?, table.text("quantity")?);
-    let (means, references, differences) = (table.f64("mean")?, table.f64("reference_mean")?, table.f64("difference")?);
-    let (intervals, shares) = (table.f64_or_null("difference_ci95")?, table.f64_or_null("relative_difference")?);
-    let (paired, counts, others) = (table.bool("paired")?, table.i64("realization_count")?, table.i64("reference_realization_count")?);
+    let (groups, campaigns, quantities) =
+        (table.i64("group")?, table.text("campaign")?, table.text("quantity")?);
+    let (means, references, differences) =
+        (table.f64("mean")?, table.f64("reference_mean")?, table.f64("difference")?);
+    let (intervals, shares) =
+        (table.f64_or_null("difference_ci95")?, table.f64_or_null("relative_difference")?);
+    let (paired, counts, others) =
+        (table.bool("paired")?, table.i64("realization_count")?, table.i64("reference_realization_count")?);
     let number = |value: f64| shown(Some(value), Shown::Plain);
     let row = |row: usize| {
         // Significant at the 95 % level.

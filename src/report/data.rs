@@ -58,7 +58,8 @@ pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsE
     let [asperities, elements] = study.case_counts;
     let range = |column: &str| -> Result<Option<String>, StatsError> {
         let values: Vec<f64> = cases.f64_or_null(column)?.iter().flatten().copied().collect();
-        let [low, high] = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick));
+        let [low, high] =
+            [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick));
         Ok(low.zip(high).map(|(low, high)| {
             let texts = labels_with_unit(column, &[low, high]);
             if low == high { texts[..1].concat() } else { texts.join(" to ") }
@@ -83,7 +84,9 @@ pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsE
         );
     }
     if elements > 0 {
-        text += &format!("Adhesive boundary-element cycles under displacement control were computed with {program}. ");
+        text += &format!(
+            "Adhesive boundary-element cycles under displacement control were computed with {program}. "
+        );
     }
     for (words, column) in [
         ("The reduced modulus was E* = ", "contact_modulus_pa"),
@@ -106,11 +109,17 @@ pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsE
 
 /// A sentence on planned cycles without a result; empty if all have one.
 fn unfinished(cases: &Frame) -> Result<String, StatsError> {
-    let (ids, done, planned) = (cases.text("case_id")?, cases.i64("done_count")?, cases.i64("planned_count")?);
-    let firsts: Vec<usize> = (0..ids.len()).filter(|row| ids.iter().position(|id| id == &ids[*row]) == Some(*row)).collect();
+    let (ids, done, planned) =
+        (cases.text("case_id")?, cases.i64("done_count")?, cases.i64("planned_count")?);
+    let firsts: Vec<usize> =
+        (0..ids.len()).filter(|row| ids.iter().position(|id| id == &ids[*row]) == Some(*row)).collect();
     let sum = |counts: &[i64]| firsts.iter().map(|row| counts[*row]).sum::<i64>();
     let (done, planned) = (sum(&done), sum(&planned));
-    Ok(if done < planned { format!("Results exist for {done} of {planned} planned cycles. ") } else { String::new() })
+    Ok(if done < planned {
+        format!("Results exist for {done} of {planned} planned cycles. ")
+    } else {
+        String::new()
+    })
 }
 
 /// Data access.

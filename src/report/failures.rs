@@ -27,7 +27,10 @@ pub(super) fn failures(failures: &[Failure], all: usize) -> Markup {
         return Markup::default();
     }
     let verdict = if failed == all {
-        format!("No results: {} failed.", if all == 1 { "the cycle".to_owned() } else { format!("all {all} cycles") })
+        format!(
+            "No results: {} failed.",
+            if all == 1 { "the cycle".to_owned() } else { format!("all {all} cycles") }
+        )
     } else {
         format!("{} of {} failed.", failed, counted(all, "cycle"))
     };
@@ -42,7 +45,8 @@ pub(super) fn failures(failures: &[Failure], all: usize) -> Markup {
                 @if !of.help.is_empty() { p { b { "Next step: " } (prose(&of.help)) "." } }
             }
             @if failures.len() > LISTED { p { "… and " (counted(failures.len() - LISTED, "other reason")) ": see " code { "statistics/cycles.parquet" } "." } }
-            p { "Change the spec and run it again: finished cycles are kept. Without a change, a cycle fails again." }
+            p { "Change the spec and run it again: finished cycles are kept. Without a change, a cycle fails \
+                 again." }
         }
         "\n"
     }

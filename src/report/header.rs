@@ -3,14 +3,17 @@
 use super::layout::{plain, prose};
 use crate::model::{Choice as _, Method};
 use crate::schema::{Parameter, parameters_by_rank};
-use crate::stats::{LIMITS, StatsError, Values, Varying, expected_ratios, significant, verdicts_of_sweeps, warnings};
+use crate::stats::{
+    LIMITS, StatsError, Values, Varying, expected_ratios, significant, verdicts_of_sweeps, warnings,
+};
 use crate::store::{ColumnData, Frame};
 use maud::{Markup, PreEscaped, html};
 
 /// Values of a parameter that the table lists; of more, it states the range.
 const MOST_VALUES: usize = 6;
 
-/// Warnings whose measured values decide whether results are inside the validated range of the asperity model.
+/// Warnings whose measured values decide whether results are inside the validated range of the asperity
+/// model.
 const DECIDING: [&str; 2] = ["sticky", "touching"];
 
 /// Warnings of the range of the asperity model.
@@ -26,7 +29,10 @@ pub(super) fn facts(cases: &Frame, seed: u64, realizations: &str) -> Result<Mark
     }
     let loads = crate::stats::labels(&cases.f64("max_load")?);
     facts.push(("F_{max}/(E*A_{0})".to_owned(), listed(loads)));
-    facts.push(("realizations".to_owned(), realizations.trim_end_matches(" realizations").trim_end_matches(" realization").to_owned()));
+    facts.push((
+        "realizations".to_owned(),
+        realizations.trim_end_matches(" realizations").trim_end_matches(" realization").to_owned(),
+    ));
     facts.push(("seed".to_owned(), seed.to_string()));
     facts.push(("hysteron".to_owned(), env!("CARGO_PKG_VERSION").to_owned()));
     Ok(html! {
@@ -37,8 +43,12 @@ pub(super) fn facts(cases: &Frame, seed: u64, realizations: &str) -> Result<Mark
 /// The values of a parameter in all cases; nothing where no case has it.
 fn values(cases: &Frame, parameter: &'static Parameter) -> Result<Option<String>, StatsError> {
     let values = match cases.column(parameter.column.name)? {
-        ColumnData::F64(all) => Values::Numbers(all.iter().filter(|value| value.is_some()).copied().collect()),
-        ColumnData::Text(all) => Values::Words(all.iter().flatten().filter(|word| !word.is_empty()).cloned().collect()),
+        ColumnData::F64(all) => {
+            Values::Numbers(all.iter().filter(|value| value.is_some()).copied().collect())
+        }
+        ColumnData::Text(all) => {
+            Values::Words(all.iter().flatten().filter(|word| !word.is_empty()).cloned().collect())
+        }
         ColumnData::I64(_) | ColumnData::Bool(_) => return Ok(None),
     };
     let count = match &values {
@@ -59,7 +69,9 @@ fn listed(texts: Vec<String>) -> String {
         }
     }
     match different.as_slice() {
-        [first, .., last] if different.len() > MOST_VALUES => format!("{first} … {last} ({} values)", different.len()),
+        [first, .., last] if different.len() > MOST_VALUES => {
+            format!("{first} … {last} ({} values)", different.len())
+        }
         all => all.join(", "),
     }
 }
@@ -70,9 +82,12 @@ pub(super) fn banner(cases: &Frame, methods: &Frame) -> Result<Markup, StatsErro
     let found = warnings(cases)?;
     let (words, done) = (cases.text("method")?, cases.i64("done_count")?);
     // Rows without a result are neither inside nor outside, and the range is that of the asperity model.
-    let judged: Vec<usize> = (0..cases.row_count()).filter(|row| done[*row] > 0 && words[*row] == Method::Asperities.word()).collect();
+    let judged: Vec<usize> = (0..cases.row_count())
+        .filter(|row| done[*row] > 0 && words[*row] == Method::Asperities.word())
+        .collect();
     let all = judged.len();
-    let mut outside: Vec<usize> = found.iter().filter(|of| OF_RANGE.contains(&of.kind.code)).flat_map(|of| of.rows.clone()).collect();
+    let mut outside: Vec<usize> =
+        found.iter().filter(|of| OF_RANGE.contains(&of.kind.code)).flat_map(|of| of.rows.clone()).collect();
     outside.retain(|row| judged.contains(row));
     outside.sort_unstable();
     outside.dedup();
@@ -81,8 +96,12 @@ pub(super) fn banner(cases: &Frame, methods: &Frame) -> Result<Markup, StatsErro
         (0, false) if all == 0 => ("amber", "With warnings.".to_owned()),
         (0, true) => ("green", "No warnings: all rows are inside the validated range.".to_owned()),
         (0, false) => ("amber", "Inside the validated range, with warnings.".to_owned()),
-        (count, _) if count == all => ("red", "All rows are outside the validated range of the asperity model.".to_owned()),
-        (count, _) => ("amber", format!("{count} of {all} rows are outside the validated range of the asperity model.")),
+        (count, _) if count == all => {
+            ("red", "All rows are outside the validated range of the asperity model.".to_owned())
+        }
+        (count, _) => {
+            ("amber", format!("{count} of {all} rows are outside the validated range of the asperity model."))
+        }
     };
     let mut numbers = Vec::new();
     for code in DECIDING {
@@ -105,14 +124,23 @@ fn deciding(cases: &Frame, rows: &[usize], code: &str) -> Result<Option<String>,
     let Some(limit) = LIMITS.iter().find(|limit| limit.caution == code) else { return Ok(None) };
     let column = cases.f64_or_null(limit.column)?;
     let values: Vec<f64> = rows.iter().filter_map(|row| column[*row]).collect();
-    let [low, high] = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick));
+    let [low, high] =
+        [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick));
     let Some((low, high)) = low.zip(high) else { return Ok(None) };
-    let number = |value: f64| if limit.at_least { significant(value, 3) } else { significant(100.0 * value, 2) };
-    let range = if number(low) == number(high) { number(low) } else { format!("{} to {}", number(low), number(high)) };
+    let number =
+        |value: f64| if limit.at_least { significant(value, 3) } else { significant(100.0 * value, 2) };
+    let range = if number(low) == number(high) {
+        number(low)
+    } else {
+        format!("{} to {}", number(low), number(high))
+    };
     Ok(Some(if limit.at_least {
         format!("U_el/Δγ = {range} (limit ≥ {})", limit.bound)
     } else {
-        format!("{range} % of contact spots overlap a neighbour (limit {} %)", significant(100.0 * limit.bound, 2))
+        format!(
+            "{range} % of contact spots overlap a neighbour (limit {} %)",
+            significant(100.0 * limit.bound, 2)
+        )
     }))
 }
 

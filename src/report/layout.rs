@@ -101,9 +101,13 @@ const MARKS: [(&str, &str, &str); 3] = [("_{", "}", "sub"), ("^{", "}", "sup"), 
 
 /// Text with the markup of the figures, `_{subscript}` and `^{superscript}`, and with code between backticks.
 pub(super) fn prose(text: &str) -> Markup {
-    let first =
-        MARKS.iter().filter_map(|mark| text.split_once(mark.0).map(|parts| (parts, mark))).min_by_key(|((before, _), _)| before.len());
-    let parts = first.and_then(|((before, rest), mark)| rest.split_once(mark.1).map(|(inside, after)| (before, inside, after, mark.2)));
+    let first = MARKS
+        .iter()
+        .filter_map(|mark| text.split_once(mark.0).map(|parts| (parts, mark)))
+        .min_by_key(|((before, _), _)| before.len());
+    let parts = first.and_then(|((before, rest), mark)| {
+        rest.split_once(mark.1).map(|(inside, after)| (before, inside, after, mark.2))
+    });
     let Some((before, inside, after, element)) = parts else { return html! { (text) } };
     html! {
         (before)
@@ -125,7 +129,9 @@ pub(super) fn plain(text: &str) -> Markup {
 /// Panels in a grid, each with number, caption and links to its files.
 pub(super) fn grid<'a>(numbers: &Numbers<'_>, panels: impl IntoIterator<Item = &'a Panel>) -> Markup {
     let number = numbers.next();
-    let label = |name: &str| if name.chars().count() > 1 { format!(", {}", name.replace('_', " ")) } else { name.to_owned() };
+    let label = |name: &str| {
+        if name.chars().count() > 1 { format!(", {}", name.replace('_', " ")) } else { name.to_owned() }
+    };
     html! {
         div.panels {
             "\n"

@@ -69,14 +69,16 @@ pub struct LiveRun {
     pub loops: Vec<LiveLoop>,
 }
 
-/// The page as HTML. Its script compares the time of the last update with the clock, and the text without the script states the same rule.
+/// The page as HTML. Its script compares the time of the last update with the clock, and the text without the
+/// script states the same rule.
 #[must_use]
 pub fn live_page(run: &LiveRun) -> String {
     let shown = run.updated.replace('T', " ").replace('Z', " UTC");
     let body = html! {
         h1 { (run.name) ": " span #state { "state at " (shown) } } "\n"
         div #ended .banner.red hidden role="alert" {
-            p { b { "Interrupted." } " The process that computed this run has ended without finishing; the state below is its last one. Resume with " code { "hysteron run " (run.dir) } "." }
+            p { b { "Interrupted." } " The process that computed this run has ended without finishing; the \
+                 state below is its last one. Resume with " code { "hysteron run " (run.dir) } "." }
         }
         "\n"
         p {
@@ -102,7 +104,8 @@ pub fn live_page(run: &LiveRun) -> String {
         }
         @if !run.loops.is_empty() {
             h2 { "Finished cycles" } "\n"
-            p { (plain("Normal force F/(E*A₀) against mean penetration Δ/h_rms; loading dashed, unloading solid.")) } "\n"
+            p { (plain("Normal force F/(E*A₀) against mean penetration Δ/h_rms; loading dashed, unloading \
+                 solid.")) } "\n"
             ul.loops { @for of in run.loops.iter().rev().take(MOST_LOOPS) { li { (drawn(of)) } } } "\n"
         }
         script { (PreEscaped(format!("const SILENT_MS = {SILENT_SECONDS}e3;\n{}", include_str!("live.js")))) } "\n"
@@ -146,8 +149,12 @@ fn drawn(of: &LiveLoop) -> Markup {
         (low, high) = ((low.0.min(x), low.1.min(y)), (high.0.max(x), high.1.max(y)));
     }
     let place = |(x, y): (f64, f64)| {
-        let share = |value: f64, low: f64, high: f64| if high > low { (value - low) / (high - low) } else { 0.5 };
-        (4.0 + (SIZE.0 - 8.0) * share(x, low.0, high.0), 4.0 + (SIZE.1 - 8.0) * (1.0 - share(y, low.1, high.1)))
+        let share =
+            |value: f64, low: f64, high: f64| if high > low { (value - low) / (high - low) } else { 0.5 };
+        (
+            4.0 + (SIZE.0 - 8.0) * share(x, low.0, high.0),
+            4.0 + (SIZE.1 - 8.0) * (1.0 - share(y, low.1, high.1)),
+        )
     };
     let number = |value: f64| significant(value, 3).replace('-', "−");
     let zero = place((low.0, 0.0)).1;

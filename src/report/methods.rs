@@ -25,7 +25,8 @@ const NOTE: &str = "Means over the surfaces that both methods have finished, and
     boundary elements on the same surface: mean ± standard deviation. The table `statistics/methods.parquet` holds each surface and the 95 % \
     confidence intervals.";
 
-/// A table of the means of both methods and their ratios; empty without cases of the same surfaces by both methods.
+/// A table of the means of both methods and their ratios; empty without cases of the same surfaces by both
+/// methods.
 pub(super) fn side_by_side(
     cases: &Cases<'_>,
     methods: &Frame,
@@ -42,8 +43,11 @@ pub(super) fn side_by_side(
     }
     let names = names_of_pairs(cases.frame, &pairs)?;
     let loads = labels(&pairs.iter().map(|pair| pair.max_load).collect::<Vec<f64>>());
-    let rows: Vec<Markup> =
-        pairs.iter().zip(names.iter().zip(&loads)).map(|(pair, (name, load))| row(pair, [name, load], &scales)).collect();
+    let rows: Vec<Markup> = pairs
+        .iter()
+        .zip(names.iter().zip(&loads))
+        .map(|(pair, (name, load))| row(pair, [name, load], &scales))
+        .collect();
     Ok(html! {
         (heading("Asperity model and boundary elements"))
         p { (prose(NOTE)) } "\n"

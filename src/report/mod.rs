@@ -120,7 +120,8 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
             @if has_results {
                 (header::banner(report.cases, report.methods)?)
             } @else if report.failures.is_empty() {
-                div.banner.amber role="note" { p { b { "No results: no surface finished." } " `hysteron run` computes the pending cycles." } } "\n"
+                div.banner.amber role="note" { p { b { "No results: no surface finished." } " `hysteron run` \
+                     computes the pending cycles." } } "\n"
             }
             (header::facts(report.cases, report.seed, report.realizations_text)?)
             (header::contents(&body))
@@ -154,7 +155,8 @@ fn explorer(data: &str, has_spots: bool) -> Markup {
 
 /// The figures of a sweep with their legend.
 fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
-    let panels: Vec<&Panel> = report.drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel).collect();
+    let panels: Vec<&Panel> =
+        report.drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel).collect();
     html! {
         // A run without sweeps has the cases of its base.
         (heading(&if matches!(sweep, "" | "base") { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
@@ -169,9 +171,11 @@ fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
 const SYMBOLS: &str = "E*: reduced modulus; A_{0}: nominal area; h_{rms}: root-mean-square height; Δγ: work of adhesion; Δ: mean penetration; \
     F: normal load, positive in compression.";
 
-const ASPERITIES: &str = "Interacting asperities of Johnson, Kendall and Roberts (JKR) after Violano and Afferrante, Lubricants 9(1):7 (2021), with corrected equations. ";
+const ASPERITIES: &str = "Interacting asperities of Johnson, Kendall and Roberts (JKR) after Violano and \
+     Afferrante, Lubricants 9(1):7 (2021), with corrected equations. ";
 
-const ELEMENTS: &str = "Adhesive boundary elements: the rough surface on a grid, loaded and unloaded under displacement control. ";
+const ELEMENTS: &str = "Adhesive boundary elements: the rough surface on a grid, loaded and unloaded under \
+     displacement control. ";
 
 /// Number of cases and realizations, methods and symbols.
 fn introduction(report: &Report<'_>) -> Markup {

@@ -13,14 +13,16 @@ pub(super) enum Shown {
 /// Sign of a missing number.
 const MISSING: &str = "–";
 
-/// The common power of ten of the numbers of a column; none where they differ by too much, and each has its own.
+/// The common power of ten of the numbers of a column; none where they differ by too much, and each has its
+/// own.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scale(Option<i32>);
 
 impl Scale {
     pub(super) fn of(means: &[f64]) -> Self {
         let exponent = column_exponent(means.iter().copied());
-        let is_readable = |mean: &f64| *mean == 0.0 || (1e-3..1e5).contains(&(mean.abs() / 10f64.powi(exponent)));
+        let is_readable =
+            |mean: &f64| *mean == 0.0 || (1e-3..1e5).contains(&(mean.abs() / 10f64.powi(exponent)));
         Self(means.iter().all(is_readable).then_some(exponent))
     }
 
@@ -64,7 +66,9 @@ fn power(number: f64) -> Markup {
 pub(super) fn shown(number: Option<f64>, format: Shown) -> Markup {
     let Some(number) = number else { return html! { (MISSING) } };
     let text = match (format, number.abs()) {
-        (Shown::Percent, size) if (100.0 * size).fract() == 0.0 => format!("{:.0}\u{a0}%", 100.0 * number + 0.0),
+        (Shown::Percent, size) if (100.0 * size).fract() == 0.0 => {
+            format!("{:.0}\u{a0}%", 100.0 * number + 0.0)
+        }
         (Shown::Percent, size) if size < 5e-4 => "0.0\u{a0}%".to_owned(),
         (Shown::Percent, _) => format!("{:.1}\u{a0}%", 100.0 * number),
         (Shown::Plain, 0.0) => "0".to_owned(),

@@ -37,7 +37,8 @@ pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         th { "finished of planned" }
         @for ((heading, ..), scale) in RESULTS.iter().zip(&scales) { th { (prose(heading)) (scale.head()) } }
     };
-    let rows = cases.rows().iter().map(|listed| row(cases, listed, &scales)).collect::<Result<Vec<_>, _>>()?;
+    let rows =
+        cases.rows().iter().map(|listed| row(cases, listed, &scales)).collect::<Result<Vec<_>, _>>()?;
     Ok(html! { (heading("Results")) p { (note(cases.reference())) } "\n" (wide("results", &head, &rows)) })
 }
 
@@ -51,14 +52,17 @@ fn note(reference: Option<&str>) -> Markup {
     html! {
         (prose(&text))
         @if let Some(of) = reference {
-            " Reference case: " (of) ". It belongs to the most sweeps; the other cases are named by the parameters that differ from it."
+            " Reference case: " (of) ". It belongs to the most sweeps; the other cases are named by the \
+                 parameters that differ from it."
         }
     }
 }
 
 fn row(cases: &Cases<'_>, listed: &Listed, scales: &[Scale]) -> Result<Markup, StatsError> {
     let row = listed.row;
-    let count = |name: &str| -> Result<i64, StatsError> { Ok(cases.frame.i64(name)?.get(row).copied().unwrap_or_default()) };
+    let count = |name: &str| -> Result<i64, StatsError> {
+        Ok(cases.frame.i64(name)?.get(row).copied().unwrap_or_default())
+    };
     let (done, planned, failed) = (count("done_count")?, count("planned_count")?, count("failed_count")?);
     let mut cells = Vec::new();
     for ((_, column, positive), scale) in RESULTS.into_iter().zip(scales) {
@@ -72,7 +76,12 @@ fn row(cases: &Cases<'_>, listed: &Listed, scales: &[Scale]) -> Result<Markup, S
 }
 
 /// A mean with its confidence interval, or with the values of the single surfaces.
-fn result(cases: &Cases<'_>, row: usize, column: &str, (scale, positive): (Scale, bool)) -> Result<Markup, StatsError> {
+fn result(
+    cases: &Cases<'_>,
+    row: usize,
+    column: &str,
+    (scale, positive): (Scale, bool),
+) -> Result<Markup, StatsError> {
     let number = |end: &str| cases.number(&format!("{column}_{end}"), row);
     let (mean, low, high) = (number("mean")?, number("ci95_low")?, number("ci95_high")?);
     let text = |number: f64| scaled(Some(number), scale);
@@ -94,14 +103,21 @@ const CHANGES_NOTE: &str = "Difference of the means from the reference case at t
     half-width of the 95 % confidence interval: surface by surface where both cases have the same surfaces, otherwise of two independent means \
     (Welch). Differences larger than their half-width are bold.";
 
-/// Differences of the means of each case from those of the reference case at the same load; empty without such a case.
+/// Differences of the means of each case from those of the reference case at the same load; empty without
+/// such a case.
 pub(super) fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
-    let compared = cases.rows().iter().filter_map(|listed| listed.reference.map(|reference| (listed, reference)));
+    let compared =
+        cases.rows().iter().filter_map(|listed| listed.reference.map(|reference| (listed, reference)));
     let mut rows = Vec::new();
     for (listed, reference) in compared {
         let mut cells = Vec::new();
         for (_, column) in CHANGES {
-            cells.push(change(difference_of(cases.frame, cases.realizations, [listed.row, reference], column)?));
+            cells.push(change(difference_of(
+                cases.frame,
+                cases.realizations,
+                [listed.row, reference],
+                column,
+            )?));
         }
         rows.push(html! { (cases.name(listed)) @for cell in cells { (cell) } });
     }
@@ -109,13 +125,16 @@ pub(super) fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         return Ok(Markup::default());
     }
     let head = html! { (name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
-    Ok(html! { (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n" (wide("differences", &head, &rows)) })
+    Ok(
+        html! { (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n" (wide("differences", &head, &rows)) },
+    )
 }
 
 /// A relative difference with the half-width of its interval; bold if it is larger than that.
 fn change(found: Option<Difference>) -> Markup {
     let clear = found.is_some_and(|found| found.ci95.is_some_and(|half| found.of.abs() > half));
-    let share = |found: Difference, part: f64| Some(part / found.means[1].abs()).filter(|share| share.is_finite());
+    let share =
+        |found: Difference, part: f64| Some(part / found.means[1].abs()).filter(|share| share.is_finite());
     let change = found.and_then(|found| share(found, found.of));
     let half = found.and_then(|found| found.ci95.and_then(|half| share(found, half)));
     html! {

@@ -77,7 +77,9 @@ fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
 
 /// Long cut-off, roll-off and short cut-off of the spectrum of a surface of side L \[m\].
 fn ends(fit: &SpectrumFit, length_m: f64) -> String {
-    [fit.long_cut_m, fit.roll_off_m(length_m), fit.short_cut.map(|(length, _)| length)].map(length).join(" / ")
+    [fit.long_cut_m, fit.roll_off_m(length_m), fit.short_cut.map(|(length, _)| length)]
+        .map(length)
+        .join(" / ")
 }
 
 /// A length \[m\], or a dash.

@@ -30,13 +30,19 @@ const OF_SPOTS: &str = "loss_touched";
 const NOTE: &str = "Dissipated energies are over E*A_{0}h_{rms}, at the simulated contact area.";
 
 const MODELS: [&str; 7] = [
-    "Θ_{DK}, Deng and Kesari (Eqs A1–A4, corrected): mean dissipated energy of one asperity times Nayak's summit density and the contact area.",
-    "Σθ: sum over contacting asperities without elastic interaction, with jump into contact at zero penetration.",
+    "Θ_{DK}, Deng and Kesari (Eqs A1–A4, corrected): mean dissipated energy of one asperity times Nayak's \
+     summit density and the contact area.",
+    "Σθ: sum over contacting asperities without elastic interaction, with jump into contact at zero \
+     penetration.",
     "Δγ A: work of adhesion times contact area, an empirical relation near full contact (Dalvi et al. 2019).",
-    "2kU_{el}A with k = 1.35: crack-front pinning in a connected, weakly rough contact (Sanner et al. 2024; prefactor of hysteron), empty for kU_{el} ≥ Δγ/2.",
-    "JKR from adhesionless curve: load and area of adhesive contact from those without adhesion on the same surface (Ciavarella 2018); boundary elements only.",
-    "Adhesionless areas: Persson's theory, and the small-load limit of boundary-element results, with the realised rms slope h′.",
-    "U_{el}/Δγ (Persson and Tosatti) or U_{el}/(2Δγ) (Wang and Müser) below 1, or a Fuller–Tabor parameter below about 10: adhesion is strong.",
+    "2kU_{el}A with k = 1.35: crack-front pinning in a connected, weakly rough contact (Sanner et al. 2024; \
+     prefactor of hysteron), empty for kU_{el} ≥ Δγ/2.",
+    "JKR from adhesionless curve: load and area of adhesive contact from those without adhesion on the same \
+     surface (Ciavarella 2018); boundary elements only.",
+    "Adhesionless areas: Persson's theory, and the small-load limit of boundary-element results, with the \
+     realised rms slope h′.",
+    "U_{el}/Δγ (Persson and Tosatti) or U_{el}/(2Δγ) (Wang and Müser) below 1, or a Fuller–Tabor parameter \
+     below about 10: adhesion is strong.",
 ];
 
 /// Dissipated energies, contact areas and adhesion parameters of analytical models.

@@ -8,27 +8,55 @@ use crate::schema::EventKind;
 use crate::stats::{LIMITS, Limit, Listed, StatsError, Warning, warnings};
 use maud::{Markup, html};
 
-/// The table of model validity: heading, the column that is compared with a limit, and the column shown in parentheses.
+/// The table of model validity: heading, the column that is compared with a limit, and the column shown in
+/// parentheses.
 const VALIDITY: [(&str, &str, Option<&str>, Shown); 10] = [
     ("Tabor parameter μ: minimum (mean)", "tabor_min_min", Some("tabor_mean_mean"), Shown::Plain),
     ("asperities with μ < 2", "low_tabor_share_mean", None, Shown::Percent),
     ("asperities per surface: mean (minimum)", "summit_count_mean", Some("summit_count_min"), Shown::Plain),
-    ("contacts at F_{max}: mean (minimum)", "contact_count_at_max_load_mean", Some("contact_count_at_max_load_min"), Shown::Plain),
-    ("overlapping contacts: pooled (maximum)", "touching_share_mean", Some("touching_share_max"), Shown::Percent),
-    ("absorbed asperities: pooled (maximum)", "covered_share_mean", Some("covered_share_max"), Shown::Percent),
+    (
+        "contacts at F_{max}: mean (minimum)",
+        "contact_count_at_max_load_mean",
+        Some("contact_count_at_max_load_min"),
+        Shown::Plain,
+    ),
+    (
+        "overlapping contacts: pooled (maximum)",
+        "touching_share_mean",
+        Some("touching_share_max"),
+        Shown::Percent,
+    ),
+    (
+        "absorbed asperities: pooled (maximum)",
+        "covered_share_mean",
+        Some("covered_share_max"),
+        Shown::Percent,
+    ),
     ("texture aspect ratio: maximum (mean)", "texture_aspect_max", Some("texture_aspect_mean"), Shown::Plain),
     ("A/A_{0}", "area_at_max_load_mean", None, Shown::Percent),
-    ("U_{el}/Δγ of the shortest octave: realised (target)", "conformity_realised_mean", Some("conformity_mean"), Shown::Plain),
-    ("U_{el}/Δγ: realised (target)", "persson_tosatti_realised_mean", Some("persson_tosatti_mean"), Shown::Plain),
+    (
+        "U_{el}/Δγ of the shortest octave: realised (target)",
+        "conformity_realised_mean",
+        Some("conformity_mean"),
+        Shown::Plain,
+    ),
+    (
+        "U_{el}/Δγ: realised (target)",
+        "persson_tosatti_realised_mean",
+        Some("persson_tosatti_mean"),
+        Shown::Plain,
+    ),
 ];
 
 const BUDGET_NOTE: &str = "Θ is the area of the loop. The energies of all events sum to the same value if the energy balance is exact; the \
     energy-balance error is the difference over Θ. Both are over E*A_{0}h_{rms}. The percentages are fractions of the sum over events: by \
     branch, and by the kind of event that triggers each relaxation.";
 
-const ABSORPTION_NOTE: &str = " Absorption and release have no potential, so their fractions may be negative.";
+const ABSORPTION_NOTE: &str =
+    " Absorption and release have no potential, so their fractions may be negative.";
 
-/// The energy budget: fractions by branch and by kind of event. Kinds without dissipated energy in all cases have no column.
+/// The energy budget: fractions by branch and by kind of event. Kinds without dissipated energy in all cases
+/// have no column.
 pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     let mut kinds = Vec::new();
     for kind in EventKind::ALL {
@@ -47,7 +75,8 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         th { "unloading" }
         @for kind in &kinds { th { (kind.name()) } }
     };
-    let rows = cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
+    let rows =
+        cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
     Ok(
         html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) @if cases.has_spots()? { (ABSORPTION_NOTE) } } "\n" (wide("energy", &head, &rows)) },
     )
@@ -62,8 +91,11 @@ fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[EventKind]) -> Result
         let part = mean(&format!("dissipated_{part}"))?;
         Ok(part.zip(whole.filter(|whole| *whole != 0.0)).map(|(part, whole)| part / whole))
     };
-    let shares =
-        ["loading", "unloading"].into_iter().chain(kinds.iter().map(|kind| kind.word())).map(share).collect::<Result<Vec<_>, _>>()?;
+    let shares = ["loading", "unloading"]
+        .into_iter()
+        .chain(kinds.iter().map(|kind| kind.word()))
+        .map(share)
+        .collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
         (cases.name(listed))
         td { (scaled(loss, scale)) }
@@ -74,7 +106,13 @@ fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[EventKind]) -> Result
 }
 
 /// Columns of the asperity model.
-const OF_SPOTS: [&str; 5] = ["tabor_min_min", "low_tabor_share_mean", "summit_count_mean", "touching_share_mean", "covered_share_mean"];
+const OF_SPOTS: [&str; 5] = [
+    "tabor_min_min",
+    "low_tabor_share_mean",
+    "summit_count_mean",
+    "touching_share_mean",
+    "covered_share_mean",
+];
 
 const RANGE_NOTE: &str = "An asperity model is outside its range where contacts coalesce: it then underestimates the contact area \
     of a boundary-element solution by a third, even without adhesion.";
@@ -85,7 +123,8 @@ const VALIDITY_NOTE: &str = "Numbers beyond their limit are bold. U_{el} is the 
 /// The indicators of model validity with their limits, and the warnings.
 pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     let has_spots = cases.has_spots()?;
-    let columns = || VALIDITY.into_iter().filter(move |(_, column, ..)| has_spots || !OF_SPOTS.contains(column));
+    let columns =
+        || VALIDITY.into_iter().filter(move |(_, column, ..)| has_spots || !OF_SPOTS.contains(column));
     let head = html! {
         (name_heads())
         @for (heading, column, _, format) in columns() { th { (prose(heading)) (bound(column, format)) } }
@@ -100,7 +139,12 @@ pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                 continue;
             }
             let aside = aside.map(|column| cases.number(column, listed.row)).transpose()?.flatten();
-            cells.push(cell(cases, listed.row, column, &with_aside(cases.number(column, listed.row)?, aside, format)));
+            cells.push(cell(
+                cases,
+                listed.row,
+                column,
+                &with_aside(cases.number(column, listed.row)?, aside, format),
+            ));
         }
         Ok(html! { (cases.name(listed)) @for cell in cells { (cell) } })
     };

@@ -25,15 +25,24 @@ const OWN: &[Column] = &[
     text("quantity", "Compared quantity: a column of the table realizations"),
     real("mean", "1", "Mean over the realizations of the compared run"),
     real("reference_mean", "1", "Mean over the realizations of the reference run"),
-    real("difference", "1", "Mean minus reference_mean; if paired, mean of the differences surface by surface"),
+    real(
+        "difference",
+        "1",
+        "Mean minus reference_mean; if paired, mean of the differences surface by surface",
+    ),
     real(
         "difference_ci95",
         "1",
-        "Half-width of the 95 % confidence interval of the difference (Student if paired, else Welch); null for too few realizations",
+        "Half-width of the 95 % confidence interval of the difference (Student if paired, else Welch); null \
+         for too few realizations",
     )
     .or_null(),
     real("relative_difference", "1", "Difference over |reference_mean|; null where that is 0").or_null(),
-    flag("paired", "True if both runs have the same surfaces, so that the difference is formed surface by surface"),
+    flag(
+        "paired",
+        "True if both runs have the same surfaces, so that the difference is formed surface by \
+         surface",
+    ),
     count("realization_count", "Realizations in the mean of the compared run; pairs if paired"),
     count("reference_realization_count", "Realizations in the mean of the reference run; pairs if paired"),
 ];

@@ -12,12 +12,14 @@ const CYCLE: &[Column] = &[
     text("status", "\"done\", \"failed\", or \"planned\" if not yet computed when this table was written"),
     text(
         "failure",
-        "Error message of a failed cycle; of a finished one the load reversals without a result and the error of the first; null otherwise",
+        "Error message of a failed cycle; of a finished one the load reversals without a result and the \
+         error of the first; null otherwise",
     )
     .or_null(),
 ];
 
-const COLUMNS: [Column; CASE.len() + CYCLE.len() + PARAMETER_COLUMNS.len()] = join(&[CASE, CYCLE, &PARAMETER_COLUMNS]);
+const COLUMNS: [Column; CASE.len() + CYCLE.len() + PARAMETER_COLUMNS.len()] =
+    join(&[CASE, CYCLE, &PARAMETER_COLUMNS]);
 
 /// Cycles with the parameters of their cases.
 pub static CYCLES: Table = Table {

@@ -29,24 +29,29 @@ const SURFACE: &[Column] = &[
     real("length_m", "m", "Side L of the square"),
     real("rms_height_m", "m", "Root-mean-square height of the realized surface"),
     flag("periodic", "True if the surface continues periodically"),
-    real("cut_off_m", "m", "S-filter cut-off wavelength of a measured surface; null for a generated surface").or_null(),
+    real("cut_off_m", "m", "S-filter cut-off wavelength of a measured surface; null for a generated surface")
+        .or_null(),
     real(
         "shortest_wavelength_m",
         "m",
-        "Shortest wavelength: L/ζ of a generated surface; of a measured surface that of its shortest octave with 10 % of the mean square Laplacian",
+        "Shortest wavelength: L/ζ of a generated surface; of a measured surface that of its shortest octave \
+         with 10 % of the mean square Laplacian",
     ),
     real(
         "flattening_wavenumber_1_m",
         "1/m",
-        "Unit q of the wavenumbers k in the sums flattening: 2π/L of a generated surface, 1/m of a measured one",
+        "Unit q of the wavenumbers k in the sums flattening: 2π/L of a generated surface, 1/m of a measured \
+         one",
     ),
     real(
         "flattening_m2",
         "m^2",
-        "Sum 1/4 Σ (k/q) |c_k|^2 over all modes of the realized spectrum; times flattening_wavenumber_1_m it is U_el/E*, with the elastic energy per area U_el of flattening all roughness",
+        "Sum 1/4 Σ (k/q) |c_k|^2 over all modes of the realized spectrum; times flattening_wavenumber_1_m it \
+         is U_el/E*, with the elastic energy per area U_el of flattening all roughness",
     )
     .from("Persson and Tosatti 2001"),
-    real("flattening_octave_m2", "m^2", "The same sum over the shortest octave of wavelengths").from("Persson and Tosatti 2001"),
+    real("flattening_octave_m2", "m^2", "The same sum over the shortest octave of wavelengths")
+        .from("Persson and Tosatti 2001"),
 ];
 
 const SURFACE_COLUMNS: [Column; SURFACE.len() + OF_SURFACE.len()] = join(&[SURFACE, OF_SURFACE]);
@@ -100,18 +105,26 @@ macro_rules! deng_kesari {
         real(
             concat!($name, $errata, "_nominal_j"),
             "J",
-            concat!("Deng-Kesari estimate Θ_DK at A = A0, with the moments of the ", $moments, $equations, "; null ", $null),
+            concat!(
+                "Deng-Kesari estimate Θ_DK at A = A0, with the moments of the ",
+                $moments,
+                $equations,
+                "; null ",
+                $null
+            ),
         )
         .or_null()
         .from("Eqs A1-A4")
     };
 }
 
-/// Deng–Kesari estimates at `A = A0` with the moments of the continuous spectrum: corrected, with a2, with a3, with both.
+/// Deng–Kesari estimates at `A = A0` with the moments of the continuous spectrum: corrected, with a2, with
+/// a3, with both.
 pub const DENG_KESARI: [Column; 4] =
     deng_kesari!("loss_dk", "continuous spectrum", "for a measured surface, and where Eq A2 has no integral");
 /// Deng–Kesari estimates with the moments of the realized surface, likewise.
-pub const DENG_KESARI_REALISED: [Column; 4] = deng_kesari!("loss_dk_realised", "realized surface", "where Eq A2 has no integral");
+pub const DENG_KESARI_REALISED: [Column; 4] =
+    deng_kesari!("loss_dk_realised", "realized surface", "where Eq A2 has no integral");
 
 const ENERGIES: &[Column] = &[
     real("max_load", "1", "Normal load F_max/(E* A0) at the load reversal"),
@@ -120,14 +133,17 @@ const ENERGIES: &[Column] = &[
     real(
         "loss_pinning_nominal_j",
         "J",
-        "Dissipated energy of crack-front pinning at A = A0, 2 k U_el A0 with k = 1.35; null where k U_el >= Δγ/2, and without adhesion",
+        "Dissipated energy of crack-front pinning at A = A0, 2 k U_el A0 with k = 1.35; null where k U_el >= \
+         Δγ/2, and without adhesion",
     )
     .or_null()
     .from("Sanner et al. 2024"),
     real(
         "resolution_j",
         "J",
-        "Dissipated energy below which Θ is not resolved: 1e-7 of the maximum work along the loop, or the energy by which the loop violates the sign of Θ or the energy balance; null for a load that is not reached",
+        "Dissipated energy below which Θ is not resolved: 1e-7 of the maximum work along the loop, or the \
+         energy by which the loop violates the sign of Θ or the energy balance; null for a load that is not \
+         reached",
     )
     .or_null(),
 ];
@@ -142,6 +158,7 @@ pub static ESTIMATES: Table = Table {
     name: "estimates",
     version: 1,
     file: "cycles/<id>/estimates.parquet",
-    doc: "One row per load reversal: analytical estimates of the cycle for its surface, material and load, and the resolution of its dissipated energy.",
+    doc: "One row per load reversal: analytical estimates of the cycle for its surface, material and load, \
+         and the resolution of its dissipated energy.",
     columns: &CYCLE_COLUMNS,
 };

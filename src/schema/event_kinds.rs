@@ -9,12 +9,14 @@ pub const EVENT_KINDS: [&str; EventKind::ALL.len()] = EventKind::WORDS;
 /// The kind of event of a word in the tables; of a word of boundary elements the kind that corresponds to it.
 #[must_use]
 pub fn event_kind(word: &str) -> Option<EventKind> {
-    let of_region = || RegionChange::ALL.into_iter().find(|change| change.word() == word).map(RegionChange::kind);
+    let of_region =
+        || RegionChange::ALL.into_iter().find(|change| change.word() == word).map(RegionChange::kind);
     EventKind::ALL.into_iter().find(|kind| kind.word() == word).or_else(of_region)
 }
 
-/// Calls a macro with a row of each kind, in the order of [`EventKind::ALL`]: word, remark in the table of events,
-/// colour, and descriptions of its columns in the tables of steps, of avalanches, and over realizations.
+/// Calls a macro with a row of each kind, in the order of [`EventKind::ALL`]: word, remark in the table of
+/// events, colour, and descriptions of its columns in the tables of steps, of avalanches, and over
+/// realizations.
 macro_rules! event_kinds {
     ($columns:ident) => {
         $columns! {
@@ -29,13 +31,16 @@ macro_rules! event_kinds {
             "cover", " (absorption)", "other",
                 "Asperities absorbed since the previous step",
                 "Asperities absorbed by a larger contact",
-                "of absorption, including the relaxation that follows; may be negative, since absorption has no potential";
+                "of absorption, including the relaxation that follows; may be negative, since absorption has \
+no potential";
             "uncover", " (release)", "in",
                 "Asperities released from absorption since the previous step",
                 "Asperities released from absorption",
-                "of release from absorption, including the relaxation that follows; may be negative, since absorption has no potential";
+                "of release from absorption, including the relaxation that follows; may be negative, since \
+absorption has no potential";
             "snap", " (snap-through: same contacts, new equilibrium)", "other",
-                "Snap-through events since the previous step: transitions to another equilibrium with the same contacts; regions grown or shrunk of boundary elements",
+                "Snap-through events since the previous step: transitions to another equilibrium with the \
+same contacts; regions grown or shrunk of boundary elements",
                 "Snap-through events: transitions to another equilibrium with the same contacts",
                 "of snap-through events: transitions to another equilibrium with the same contacts";
             "merge", "", "other",
@@ -60,7 +65,8 @@ macro_rules! counts {
         pub(super) const KINDS_DOC: &str = concat!(
             "Kind of event: ",
             $("\"", $word, "\"", $remark, ", ",)+
-            "and of boundary elements the change of the region whose area changed most: \"formed\", \"lost\", \"joined\", \"parted\", \"grown\" or \"shrunk\""
+            "and of boundary elements the change of the region whose area changed most: \"formed\", \
+             \"lost\", \"joined\", \"parted\", \"grown\" or \"shrunk\""
         );
     };
 }

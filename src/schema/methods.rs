@@ -6,8 +6,18 @@ use super::{Column, REALIZATION, SURFACE_ID, Table, count, join, real, text};
 macro_rules! compared {
     ($name:literal, $what:literal) => {
         &[
-            real(concat!($name, "_asperities"), "1", concat!($what, ", asperity model; null where it is not resolved")).or_null(),
-            real(concat!($name, "_elements"), "1", concat!($what, ", boundary elements; null where it is not resolved")).or_null(),
+            real(
+                concat!($name, "_asperities"),
+                "1",
+                concat!($what, ", asperity model; null where it is not resolved"),
+            )
+            .or_null(),
+            real(
+                concat!($name, "_elements"),
+                "1",
+                concat!($what, ", boundary elements; null where it is not resolved"),
+            )
+            .or_null(),
             real(
                 concat!($name, "_ratio"),
                 "1",
@@ -18,18 +28,34 @@ macro_rules! compared {
                 ),
             )
             .or_null(),
-            real(concat!($name, "_ratio_mean"), "1", concat!("Mean over the surfaces of the pair of cases: ratio of ", $what)).or_null(),
-            real(concat!($name, "_ratio_sd"), "1", concat!("Standard deviation over these surfaces (n - 1): ratio of ", $what)).or_null(),
+            real(
+                concat!($name, "_ratio_mean"),
+                "1",
+                concat!("Mean over the surfaces of the pair of cases: ratio of ", $what),
+            )
+            .or_null(),
+            real(
+                concat!($name, "_ratio_sd"),
+                "1",
+                concat!("Standard deviation over these surfaces (n - 1): ratio of ", $what),
+            )
+            .or_null(),
             real(
                 concat!($name, "_ratio_ci95_low"),
                 "1",
-                concat!("Lower limit of the 95 % confidence interval of the mean (Student): ratio of ", $what),
+                concat!(
+                    "Lower limit of the 95 % confidence interval of the mean (Student): ratio of ",
+                    $what
+                ),
             )
             .or_null(),
             real(
                 concat!($name, "_ratio_ci95_high"),
                 "1",
-                concat!("Upper limit of the 95 % confidence interval of the mean (Student): ratio of ", $what),
+                concat!(
+                    "Upper limit of the 95 % confidence interval of the mean (Student): ratio of ",
+                    $what
+                ),
             )
             .or_null(),
         ]
@@ -67,6 +93,7 @@ pub static METHODS: Table = Table {
     name: "methods",
     version: 1,
     file: "statistics/methods.parquet",
-    doc: "One row per pair of cases of the same surface and material, one by each method, surface and load reversal. Without such a pair the table has no row.",
+    doc: "One row per pair of cases of the same surface and material, one by each method, surface and load \
+         reversal. Without such a pair the table has no row.",
     columns: &COLUMNS,
 };

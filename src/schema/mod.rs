@@ -1,7 +1,7 @@
 //! Definitions of all tables and columns: name, kind, unit, null, description, source.
 //!
-//! The writer, the checks of the reader, `schemas/*.json` and `schemas/README.md` are derived from it. This module is
-//! independent of file formats.
+//! The writer, the checks of the reader, `schemas/*.json` and `schemas/README.md` are derived from it. This
+//! module is independent of file formats.
 
 mod avalanches;
 mod comparison;
@@ -21,12 +21,16 @@ pub use avalanches::AVALANCHES;
 pub use comparison::COMPARISON;
 pub use curves::{CURVES, PANELS};
 pub use cycles::CYCLES;
-pub use estimates::{DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES};
+pub use estimates::{
+    DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
+};
 pub use event_kinds::{EVENT_COLOURS, EVENT_KINDS, event_kind};
 pub use methods::METHODS;
 pub use parameter::{CaseFacts, Parameter, ParameterValue};
 pub use parameters::{PARAMETERS, parameters_by_rank};
-pub use render::{DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json};
+pub use render::{
+    DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json,
+};
 pub use run::{ADHESIONLESS, ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
 pub use statistics::{CASES, REALIZATIONS};
 
@@ -63,8 +67,8 @@ pub struct Column {
     pub name: &'static str,
     /// Kind of its values.
     pub kind: Kind,
-    /// SI unit, as UDUNITS, pint and astropy read it: "m", "J/m^2"; "1" if dimensionless or counted; empty for
-    /// identities, words and truth values, which have none.
+    /// SI unit, as UDUNITS, pint and astropy read it: "m", "J/m^2"; "1" if dimensionless or counted; empty
+    /// for identities, words and truth values, which have none.
     pub unit: &'static str,
     /// True if a value may be missing. Missing is null, never 0.
     pub nullable: bool,
@@ -98,11 +102,17 @@ impl Table {
 }
 
 const CYCLE_ID: Column = text("cycle_id", "Identifier of the cycle: name of its directory below cycles/");
-const REALIZATION: Column =
-    index("realization", "Number of the realization, from 0: surfaces of the same parameters that differ in the random numbers");
-const SURFACE_ID: Column = text("surface_id", "Identifier of the surface: name of its file below surfaces/, without extension");
-const ASPERITIES_ID: Column =
-    text("asperities_id", "Identifier of the asperity table: name of its file below asperities/, without extension; equal to surface_id");
+const REALIZATION: Column = index(
+    "realization",
+    "Number of the realization, from 0: surfaces of the same parameters that differ in the random numbers",
+);
+const SURFACE_ID: Column =
+    text("surface_id", "Identifier of the surface: name of its file below surfaces/, without extension");
+const ASPERITIES_ID: Column = text(
+    "asperities_id",
+    "Identifier of the asperity table: name of its file below asperities/, without extension; equal to \
+     surface_id",
+);
 
 /// Every table that the program writes.
 pub static TABLES: &[&Table] = &[

@@ -36,21 +36,36 @@ fn word(choice: impl Choice) -> ParameterValue {
 
 const LIST: [Parameter; COUNT] = [
     parameter(
-        text("surface_file", "File of a measured surface, with enough of its path to be unique; null for a generated surface").or_null(),
+        text(
+            "surface_file",
+            "File of a measured surface, with enough of its path to be unique; null for a \
+             generated surface",
+        )
+        .or_null(),
         ["surface", "surface"],
         0,
         |case| case.surface_file.clone().map(Word),
     ),
     parameter(
-        text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface").or_null(),
+        text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface")
+            .or_null(),
         ["dataset", "dataset"],
         1,
-        |case| case.params.surface.measured().map(|surface| &surface.dataset).filter(|name| !name.is_empty()).cloned().map(Word),
+        |case| {
+            case.params
+                .surface
+                .measured()
+                .map(|surface| &surface.dataset)
+                .filter(|name| !name.is_empty())
+                .cloned()
+                .map(Word)
+        },
     ),
     parameter(
         text(
             "detrend",
-            "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for a generated surface",
+            "Levelling of a measured surface: \"mean\", \"plane\" or \"quadratic\" was subtracted; null for \
+             a generated surface",
         )
         .or_null(),
         ["detrend", "levelling"],
@@ -58,32 +73,65 @@ const LIST: [Parameter; COUNT] = [
         |case| case.params.surface.measured().map(|surface| word(surface.detrend)),
     ),
     parameter(
-        text("filter", "Low-pass filter (S-filter) of a measured surface: \"gaussian\" or \"sharp\"; null for a generated surface").or_null(),
+        text(
+            "filter",
+            "Low-pass filter (S-filter) of a measured surface: \"gaussian\" or \"sharp\"; null \
+             for a generated surface",
+        )
+        .or_null(),
         ["S-filter", "S-filter"],
         2,
         |case| case.params.surface.measured().map(|surface| word(surface.filter)),
     ),
     parameter(
-        text("outliers", "Outliers of a measured surface: \"replaced\" or \"kept\"; null for a generated surface").or_null(),
+        text(
+            "outliers",
+            "Outliers of a measured surface: \"replaced\" or \"kept\"; null for a generated \
+             surface",
+        )
+        .or_null(),
         ["outliers", "outliers"],
         27,
-        |case| case.params.surface.measured().map(|surface| Word(if surface.outliers { "replaced" } else { "kept" }.to_owned())),
+        |case| {
+            case.params
+                .surface
+                .measured()
+                .map(|surface| Word(if surface.outliers { "replaced" } else { "kept" }.to_owned()))
+        },
     ),
     parameter(
         text(
             "align_rows",
-            "Scan lines of a measured surface whose offsets were removed: \"rows\", \"columns\" or \"auto\"; \"none\" without alignment; null for a generated surface",
+            "Scan lines of a measured surface whose offsets were removed: \"rows\", \"columns\" or \"auto\"; \
+             \"none\" without alignment; null for a generated surface",
         )
         .or_null(),
         ["align_rows", "alignment of scan lines"],
         28,
-        |case| case.params.surface.measured().map(|surface| if surface.align_rows { word(surface.fast_axis) } else { Word("none".to_owned()) }),
+        |case| {
+            case.params.surface.measured().map(|surface| {
+                if surface.align_rows { word(surface.fast_axis) } else { Word("none".to_owned()) }
+            })
+        },
     ),
     parameter(
-        real("tip_radius_m", "m", "Radius R_tip of the tip that measured the surface; null for a generated surface and without one").or_null(),
+        real(
+            "tip_radius_m",
+            "m",
+            "Radius R_tip of the tip that measured the surface; null for a generated \
+             surface and without one",
+        )
+        .or_null(),
         ["R_tip", "R_{tip} [m]"],
         29,
-        |case| case.params.surface.measured().map(|surface| surface.tip_radius_m).filter(|radius| *radius > 0.0).map(Number),
+        |case| {
+            case.params
+                .surface
+                .measured()
+                .map(|surface| surface.tip_radius_m)
+                .filter(|radius| *radius > 0.0)
+                .map(Number)
+        },
     ),
     parameter(
         real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
@@ -104,7 +152,9 @@ const LIST: [Parameter; COUNT] = [
         |case| case.params.surface.generated().map(|surface| Number(surface.magnification.into())),
     ),
     parameter(
-        real("length_m", "m", "Side L of the square; null for a measured surface whose import failed").or_null().from("Eq 10"),
+        real("length_m", "m", "Side L of the square; null for a measured surface whose import failed")
+            .or_null()
+            .from("Eq 10"),
         ["L", "L [m]"],
         6,
         |case| case.length_m.map(Number),
@@ -113,7 +163,8 @@ const LIST: [Parameter; COUNT] = [
         real(
             "rms_height_m",
             "m",
-            "Rms height h_rms: target of a generated surface, or value of a measured one; null for a measured surface whose import failed",
+            "Rms height h_rms: target of a generated surface, or value of a measured one; null for a \
+             measured surface whose import failed",
         )
         .or_null(),
         ["h", "h_{rms} [m]"],
@@ -134,7 +185,8 @@ const LIST: [Parameter; COUNT] = [
     parameter(
         text(
             "normalization",
-            "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the spectrum); null for a measured surface",
+            "Rule for the rms height: \"sample\" (heights rescaled) or \"spectrum\" (integral of the \
+             spectrum); null for a measured surface",
         )
         .or_null(),
         ["normalization", "normalization"],
@@ -142,13 +194,15 @@ const LIST: [Parameter; COUNT] = [
         |case| case.params.surface.generated().map(|surface| word(surface.normalization)),
     ),
     parameter(
-        text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface").or_null(),
+        text("amplitudes", "Fourier amplitudes: \"fixed\" or \"gaussian\"; null for a measured surface")
+            .or_null(),
         ["amplitudes", "amplitudes"],
         24,
         |case| case.params.surface.generated().map(|surface| word(surface.amplitudes)),
     ),
     parameter(
-        real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies").from("Eq 1"),
+        real("contact_modulus_pa", "Pa", "Reduced modulus E*, 1/E* = sum of (1 - ν²)/E over both bodies")
+            .from("Eq 1"),
         ["E*", "E^{*} [Pa]"],
         8,
         |case| Some(Number(case.params.material.contact_modulus_pa)),
@@ -168,7 +222,8 @@ const LIST: [Parameter; COUNT] = [
     parameter(
         text(
             "interaction",
-            "Elastic interaction between contacts: \"spots\", \"point\" or \"none\"; null for boundary elements",
+            "Elastic interaction between contacts: \"spots\", \"point\" or \"none\"; null for boundary \
+             elements",
         )
         .or_null()
         .from("Eqs 6-8"),
@@ -187,7 +242,8 @@ const LIST: [Parameter; COUNT] = [
     parameter(
         text(
             "coalescence",
-            "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for boundary elements",
+            "Coalescence rule: \"cover\" (absorption), \"merge\" (equal-area merging) or \"none\"; null for \
+             boundary elements",
         )
         .or_null()
         .from("Eq 8"),
@@ -199,7 +255,8 @@ const LIST: [Parameter; COUNT] = [
     parameter(
         text(
             "jump_in",
-            "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero penetration); null for boundary elements",
+            "Criterion for jump into contact: \"wu\" (at Wu's jump-in distance) or \"jkr\" (at zero \
+             penetration); null for boundary elements",
         )
         .or_null()
         .from("Eq 3"),
@@ -212,13 +269,16 @@ const LIST: [Parameter; COUNT] = [
         text("as_printed", "Uncorrected equations of the paper that are in use, joined by +; empty if none"),
         ["as_printed", "uncorrected equations"],
         25,
-        |case| Some(Word(case.params.as_printed.iter().map(|slip| slip.word()).collect::<Vec<_>>().join("+"))),
+        |case| {
+            Some(Word(case.params.as_printed.iter().map(|slip| slip.word()).collect::<Vec<_>>().join("+")))
+        },
     ),
     parameter(
         real(
             "approach_step",
             "1",
-            "Maximum output step of the mean penetration, over h_rms; of boundary elements, step of the mean penetration",
+            "Maximum output step of the mean penetration, over h_rms; of boundary elements, step of the mean \
+             penetration",
         ),
         ["step", "output step/h_{rms}"],
         11,
@@ -232,7 +292,8 @@ const LIST: [Parameter; COUNT] = [
         |case| Some(word(case.params.method.kind())),
     ),
     parameter(
-        real("element_points", "1", "Grid points of boundary elements along a side; null for asperities").or_null(),
+        real("element_points", "1", "Grid points of boundary elements along a side; null for asperities")
+            .or_null(),
         ["N", "grid points along a side"],
         13,
         |case| case.element_points.map(Number),
@@ -241,7 +302,8 @@ const LIST: [Parameter; COUNT] = [
     parameter(
         text(
             "attraction",
-            "Attraction of boundary elements: \"bonded\" (JKR limit) or \"range\" (Morse); null for asperities",
+            "Attraction of boundary elements: \"bonded\" (JKR limit) or \"range\" (Morse); null for \
+             asperities",
         )
         .or_null(),
         ["attraction", "attraction"],
@@ -259,7 +321,8 @@ const LIST: [Parameter; COUNT] = [
     parameter(
         text(
             "nucleation",
-            "Gap at which a point of boundary elements comes into contact: \"touch\" or \"wu\"; null for asperities and with a range",
+            "Gap at which a point of boundary elements comes into contact: \"touch\" or \"wu\"; null for \
+             asperities and with a range",
         )
         .or_null(),
         ["nucleation", "nucleation"],
@@ -270,7 +333,8 @@ const LIST: [Parameter; COUNT] = [
     parameter(
         text(
             "opening",
-            "Where contact of boundary elements opens: \"strength\", \"edges\" or \"anywhere\"; null for asperities and with a range",
+            "Where contact of boundary elements opens: \"strength\", \"edges\" or \"anywhere\"; null for \
+             asperities and with a range",
         )
         .or_null(),
         ["opening", "opening"],
@@ -279,7 +343,13 @@ const LIST: [Parameter; COUNT] = [
     )
     .of_method(),
     parameter(
-        real("halvings", "1", "Most halvings of a step of boundary elements that has an event; null for asperities").or_null(),
+        real(
+            "halvings",
+            "1",
+            "Most halvings of a step of boundary elements that has an event; null for \
+             asperities",
+        )
+        .or_null(),
         ["halvings", "halvings of a step"],
         26,
         |case| case.params.elements().map(|elements| Number(f64::from(elements.halvings))),
@@ -289,7 +359,8 @@ const LIST: [Parameter; COUNT] = [
         real(
             "precision",
             "1",
-            "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null for asperities",
+            "Tolerance of an equilibrium of boundary elements: rms residual over the maximum tension; null \
+             for asperities",
         )
         .or_null(),
         ["precision", "precision"],

@@ -71,8 +71,8 @@ pub const OWN_KEYS: [&str; 5] = ["table", "version", "file", "description", "col
 
 /// Schema of a table as one line of JSON with further keys: the metadata of each data file.
 ///
-/// The order of everything in it is fixed by the types, not by the JSON library, whose maps sort or do not sort
-/// depending on what else is built with it.
+/// The order of everything in it is fixed by the types, not by the JSON library, whose maps sort or do not
+/// sort depending on what else is built with it.
 #[must_use]
 pub fn metadata_json(table: &Table, keys: &BTreeMap<&str, &str>) -> String {
     let all = WithKeys { table: table_json(table), keys };
@@ -99,7 +99,8 @@ pub fn schema_file_name(table: &Table) -> String {
 #[must_use]
 pub fn readme_markdown(table: &Table) -> String {
     let mut page = format!(
-        "### `{}`, version {}\n\n`{}`. {}\n\n| column | kind | unit | null | meaning | source |\n|---|---|---|---|---|---|\n",
+        "### `{}`, version {}\n\n`{}`. {}\n\n| column | kind | unit | null | meaning | source \
+         |\n|---|---|---|---|---|---|\n",
         table.name, table.version, table.file, table.doc
     );
     for column in table.columns {
@@ -121,8 +122,10 @@ pub fn readme_markdown(table: &Table) -> String {
 /// Every file that belongs below [`DIRECTORY`].
 #[must_use]
 pub fn files() -> Vec<SchemaFile> {
-    let mut all: Vec<SchemaFile> =
-        TABLES.iter().map(|table| SchemaFile { name: schema_file_name(table), content: schema_json(table) }).collect();
+    let mut all: Vec<SchemaFile> = TABLES
+        .iter()
+        .map(|table| SchemaFile { name: schema_file_name(table), content: schema_json(table) })
+        .collect();
     let pages: Vec<String> = TABLES.iter().map(|table| readme_markdown(table)).collect();
     all.push(SchemaFile {
         name: "README.md".to_owned(),

@@ -9,14 +9,17 @@ pub(super) const CASE: &[Column] = &[
     text("sweep", "Names of the sweeps that contain the case, joined by +; empty for a spec without sweeps"),
 ];
 
-/// Mean, standard deviation and confidence interval of one result. All are null without a value; the last two require two.
+/// Mean, standard deviation and confidence interval of one result. All are null without a value; the last two
+/// require two.
 macro_rules! over_realizations {
     ($($name:literal)+, $unit:literal, $what:expr, $source:literal) => {
         &[
             real(concat!($($name,)+ "_mean"), $unit, concat!("Mean over realizations: ", $what)).or_null().from($source),
             real(concat!($($name,)+ "_sd"), $unit, concat!("Standard deviation over realizations (n - 1): ", $what)).or_null().from($source),
-            real(concat!($($name,)+ "_ci95_low"), $unit, concat!("Lower limit of the 95 % confidence interval of the mean (Student): ", $what)).or_null().from($source),
-            real(concat!($($name,)+ "_ci95_high"), $unit, concat!("Upper limit of the 95 % confidence interval of the mean (Student): ", $what)).or_null().from($source),
+            real(concat!($($name,)+ "_ci95_low"), $unit, concat!("Lower limit of the 95 % confidence \
+                 interval of the mean (Student): ", $what)).or_null().from($source),
+            real(concat!($($name,)+ "_ci95_high"), $unit, concat!("Upper limit of the 95 % confidence \
+                 interval of the mean (Student): ", $what)).or_null().from($source),
         ]
     };
 }
@@ -25,21 +28,31 @@ macro_rules! over_realizations {
 macro_rules! over_surfaces {
     ($name:literal, $what:literal, $source:literal) => {
         &[
-            real(concat!($name, "_mean"), "1", concat!("Mean over the surfaces of finished and failed cycles: ", $what))
-                .or_null()
-                .from($source),
-            real(concat!($name, "_min"), "1", concat!("Minimum over the surfaces of finished and failed cycles: ", $what))
-                .or_null()
-                .from($source),
+            real(
+                concat!($name, "_mean"),
+                "1",
+                concat!("Mean over the surfaces of finished and failed cycles: ", $what),
+            )
+            .or_null()
+            .from($source),
+            real(
+                concat!($name, "_min"),
+                "1",
+                concat!("Minimum over the surfaces of finished and failed cycles: ", $what),
+            )
+            .or_null()
+            .from($source),
         ]
     };
 }
 
-/// Pooled fraction of the contacts of all realizations, and its maximum over realizations. Both are null without contacts.
+/// Pooled fraction of the contacts of all realizations, and its maximum over realizations. Both are null
+/// without contacts.
 macro_rules! pooled {
     ($name:literal, $sums:literal, $what:literal) => {
         &[
-            real(concat!($name, "_mean"), "1", concat!("Pooled over realizations, ", $sums, ": ", $what)).or_null(),
+            real(concat!($name, "_mean"), "1", concat!("Pooled over realizations, ", $sums, ": ", $what))
+                .or_null(),
             real(concat!($name, "_max"), "1", concat!("Maximum over realizations: ", $what)).or_null(),
         ]
     };
@@ -49,8 +62,12 @@ macro_rules! pooled {
 macro_rules! mean_and_worst {
     ($name:literal, $end:literal, $word:literal, $what:literal, $source:literal) => {
         &[
-            real(concat!($name, "_mean"), "1", concat!("Mean over realizations: ", $what)).or_null().from($source),
-            real(concat!($name, "_", $end), "1", concat!($word, " over realizations: ", $what)).or_null().from($source),
+            real(concat!($name, "_mean"), "1", concat!("Mean over realizations: ", $what))
+                .or_null()
+                .from($source),
+            real(concat!($name, "_", $end), "1", concat!($word, " over realizations: ", $what))
+                .or_null()
+                .from($source),
         ]
     };
 }
@@ -63,79 +80,131 @@ const RESULTS: &[Column] = &[
     SURFACE_ID,
     ASPERITIES_ID,
     MAX_LOAD[0],
-    real("nominal_area_m2", "m^2", "Nominal area A0 = L^2 of the surface or scan. F = load E* A0 and A = area A0 in all tables, also where boundary elements continue a scan by mirror images").or_null(),
-    real("pull_off_load", "1", "Pull-off force F_po/(E* A0): magnitude of the most negative normal load during unloading; null with adhesion where no tension is resolved").or_null(),
-    real("pull_off_load_n", "N", "Pull-off force F_po: magnitude of the most negative normal load during unloading; null with adhesion where no tension is resolved").or_null(),
+    real("nominal_area_m2", "m^2", "Nominal area A0 = L^2 of the surface or scan. F = load E* A0 and A = \
+         area A0 in all tables, also where boundary elements continue a scan by mirror images").or_null(),
+    real("pull_off_load", "1", "Pull-off force F_po/(E* A0): magnitude of the most negative normal load \
+         during unloading; null with adhesion where no tension is resolved").or_null(),
+    real("pull_off_load_n", "N", "Pull-off force F_po: magnitude of the most negative normal load during \
+         unloading; null with adhesion where no tension is resolved").or_null(),
     real("area_at_max_load", "1", "Contact area A/A0 at load reversal, summed over the contact discs"),
-    real("area_union_at_max_load", "1", "Contact area A/A0 at load reversal, union of the contact discs; null where it was not computed").or_null(),
-    real("area_adhesionless", "1", "Adhesionless contact area A/A0 at F_max, Persson's theory: erf(sqrt(2) F/(E* A0 rms_slope))").from("Persson 2001"),
-    real("area_jkr_curve", "1", "Contact area A/A0 at load reversal, approximate JKR theory from the adhesionless curve of the same surface; null for asperities, where that curve ends below the load, and where it snaps to near full contact").or_null().from("Ciavarella 2018"),
+    real("area_union_at_max_load", "1", "Contact area A/A0 at load reversal, union of the contact discs; \
+         null where it was not computed").or_null(),
+    real("area_adhesionless", "1", "Adhesionless contact area A/A0 at F_max, Persson's theory: erf(sqrt(2) \
+         F/(E* A0 rms_slope))").from("Persson 2001"),
+    real("area_jkr_curve", "1", "Contact area A/A0 at load reversal, approximate JKR theory from the \
+         adhesionless curve of the same surface; null for asperities, where that curve ends below the load, \
+         and where it snaps to near full contact").or_null().from("Ciavarella 2018"),
     real("pull_off_jkr_curve", "1", "Pull-off force F_po/(E* A0) of the same theory; null likewise").or_null().from("Ciavarella 2018"),
-    real("loss_jkr_curve", "1", "Dissipated energy Θ/(E* A0 h_rms) of the same theory, with contact formed at zero penetration; null likewise").or_null().from("Ciavarella 2018"),
-    real("area_adhesionless_small", "1", "Adhesionless contact area A/A0 at F_max, small-load limit of boundary-element results: 2 F/(E* A0 rms_slope)").from("Hyun et al. 2004"),
+    real("loss_jkr_curve", "1", "Dissipated energy Θ/(E* A0 h_rms) of the same theory, with contact formed \
+         at zero penetration; null likewise").or_null().from("Ciavarella 2018"),
+    real("area_adhesionless_small", "1", "Adhesionless contact area A/A0 at F_max, small-load limit of \
+         boundary-element results: 2 F/(E* A0 rms_slope)").from("Hyun et al. 2004"),
     real("penetration_at_max_load", "1", "Mean penetration Δ/h_rms at load reversal"),
-    real("loss", "1", "Dissipated energy Θ/(E* A0 h_rms) of the loop; null where it is negative, since it is not resolved").or_null(),
-    real("loss_j", "J", "Dissipated energy Θ: area of the loop of normal load over mean penetration; null where it is negative, since it is not resolved").or_null(),
-    real("loss_dk", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the moments of the continuous spectrum; null for a measured surface, and where the uncorrected Eq A2 has no integral")
+    real("loss", "1", "Dissipated energy Θ/(E* A0 h_rms) of the loop; null where it is negative, since it is \
+         not resolved").or_null(),
+    real("loss_j", "J", "Dissipated energy Θ: area of the loop of normal load over mean penetration; null \
+         where it is negative, since it is not resolved").or_null(),
+    real("loss_dk", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the moments of \
+         the continuous spectrum; null for a measured surface, and where the uncorrected Eq A2 has no integral")
         .or_null()
         .from("Eqs A1-A4"),
-    real("loss_dk_realised", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the moments of the realized surface; null where these define none")
+    real("loss_dk_realised", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the \
+         moments of the realized surface; null where these define none")
         .or_null()
         .from("Eqs A1-A4"),
-    real("loss_touched", "1", "Sum of the dissipated energies of single isolated asperities over all asperities that came into contact, over E* A0 h_rms: no interaction, jump into contact at zero penetration; null for boundary elements").or_null().from("Eq A1"),
+    real("loss_touched", "1", "Sum of the dissipated energies of single isolated asperities over all \
+         asperities that came into contact, over E* A0 h_rms: no interaction, jump into contact at zero \
+         penetration; null for boundary elements").or_null().from("Eq A1"),
     real("loss_dalvi", "1", "Work of adhesion times contact area at load reversal, over E* A0 h_rms").from("Dalvi et al. 2019"),
-    real("loss_pinning", "1", "Dissipated energy of crack-front pinning, 2 k U_el times contact area at load reversal with k = 1.35, over E* A0 h_rms; null where k U_el >= Δγ/2, and where U_el is unknown").or_null().from("Sanner et al. 2024"),
+    real("loss_pinning", "1", "Dissipated energy of crack-front pinning, 2 k U_el times contact area at load \
+         reversal with k = 1.35, over E* A0 h_rms; null where k U_el >= Δγ/2, and where U_el is unknown").or_null().from("Sanner et al. 2024"),
     real("loss_ratio_dk", "1", "Ratio Θ/Θ_DK, loss over loss_dk; null where either is null or loss_dk is 0").or_null(),
     real("dissipated", "1", "Dissipated energy over E* A0 h_rms, summed over the events of the loop"),
     real("dissipated_j", "J", "Dissipated energy, summed over the events of the loop"),
-    real("audit_gap", "1", "Energy-balance error |loss_j - dissipated_j| / |loss_j|; where loss_j is 0 (no adhesion), energy of the loading events over the work of loading").or_null(),
-    real("absorption_share", "1", "Coalescence energy over dissipated energy: |cover + uncover + merge + split|/|Θ| of the energies of events; null where Θ = 0").or_null(),
-    real("loss_uncertainty", "1", "Resolution of Θ over |Θ|; the resolution is 1e-7 of the maximum work along the loop, and at least -Θ of a negative Θ and an energy-balance error above |Θ|/2; of boundary elements at least the energy-balance error; null where Θ = 0").or_null(),
+    real("audit_gap", "1", "Energy-balance error |loss_j - dissipated_j| / |loss_j|; where loss_j is 0 (no \
+         adhesion), energy of the loading events over the work of loading").or_null(),
+    real("absorption_share", "1", "Coalescence energy over dissipated energy: |cover + uncover + merge + \
+         split|/|Θ| of the energies of events; null where Θ = 0").or_null(),
+    real("loss_uncertainty", "1", "Resolution of Θ over |Θ|; the resolution is 1e-7 of the maximum work \
+         along the loop, and at least -Θ of a negative Θ and an energy-balance error above |Θ|/2; of \
+         boundary elements at least the energy-balance error; null where Θ = 0").or_null(),
     count("summit_count", "Number of asperities of the surface"),
     real("summit_density_1_m2", "1/m^2", "Number of asperities per nominal area"),
-    real("nayak_density_1_m2", "1/m^2", "Summit density of a Gaussian surface with the spectral moments of the realized surface")
+    real("nayak_density_1_m2", "1/m^2", "Summit density of a Gaussian surface with the spectral moments of \
+         the realized surface")
         .from("Eq A4, Nayak 1971"),
-    count("contact_count_at_max_load", "Asperities in contact at load reversal, or contact regions of boundary elements"),
-    count("touching_count_at_max_load", "Contact spots at load reversal that overlap a neighbour (distance < sum of radii)"),
+    count("contact_count_at_max_load", "Asperities in contact at load reversal, or contact regions of \
+         boundary elements"),
+    count("touching_count_at_max_load", "Contact spots at load reversal that overlap a neighbour (distance < \
+         sum of radii)"),
     count("covered_count_at_max_load", "Asperities absorbed by a larger contact at load reversal"),
     count("step_count", "Output steps of loading and of this unloading"),
     count("unconverged_count", "Output steps with a residual above the tolerance"),
-    count("held_count", "Frozen asperities: state kept, because it alternated between absorbed and released; summed over the steps"),
+    count("held_count", "Frozen asperities: state kept, because it alternated between absorbed and released; \
+         summed over the steps"),
     real("tabor_min", "1", "Minimum Tabor parameter μ of the asperities").from("Eq 3"),
     real("tabor_median", "1", "Median Tabor parameter μ of the asperities").from("Eq 3"),
     real("tabor_max", "1", "Maximum Tabor parameter μ of the asperities").from("Eq 3"),
     real("tabor_mean", "1", "Mean Tabor parameter μ of the asperities").from("Eq 3"),
-    real("low_tabor_share", "1", "Fraction of asperities with Tabor parameter μ < 2, where Wu's criterion is invalid").from("Eq 3"),
+    real("low_tabor_share", "1", "Fraction of asperities with Tabor parameter μ < 2, where Wu's criterion is \
+         invalid").from("Eq 3"),
     real("rms_slope", "1", "Root-mean-square slope, rms of the gradient of the realized surface"),
-    real("rms_curvature_1_m", "1/m", "Root-mean-square Laplacian of the realized surface, twice the rms mean curvature"),
+    real("rms_curvature_1_m", "1/m", "Root-mean-square Laplacian of the realized surface, twice the rms mean \
+         curvature"),
     real("nayak_parameter", "1", "Bandwidth (Nayak) parameter m0 m4/m2^2 of the realized surface").from("Nayak 1971"),
-    real("fuller_tabor", "1", "Fuller-Tabor parameter E* sd(height)^(3/2)/(mean(radius)^(1/2) Δγ) of the asperities; adhesion is negligible above about 10; null for fewer than two asperities and without adhesion").or_null().from("Fuller and Tabor 1975"),
-    real("touching_share", "1", "Fraction of contact spots that overlap a neighbour (distance < sum of radii) at load reversal; null without contact").or_null(),
-    real("covered_share", "1", "Absorbed fraction of the asperities in contact or absorbed, at load reversal; null without contact").or_null(),
-    real("conformity", "1", "Ratio U_el/Δγ of the shortest octave: elastic energy per area to flatten it over the work of adhesion, continuous spectrum; below 1 the half-space conforms to it; null for a measured surface and without adhesion")
+    real("fuller_tabor", "1", "Fuller-Tabor parameter E* sd(height)^(3/2)/(mean(radius)^(1/2) Δγ) of the \
+         asperities; adhesion is negligible above about 10; null for fewer than two asperities and without \
+         adhesion").or_null().from("Fuller and Tabor 1975"),
+    real("touching_share", "1", "Fraction of contact spots that overlap a neighbour (distance < sum of \
+         radii) at load reversal; null without contact").or_null(),
+    real("covered_share", "1", "Absorbed fraction of the asperities in contact or absorbed, at load \
+         reversal; null without contact").or_null(),
+    real("conformity", "1", "Ratio U_el/Δγ of the shortest octave: elastic energy per area to flatten it \
+         over the work of adhesion, continuous spectrum; below 1 the half-space conforms to it; null for a \
+         measured surface and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
-    real("conformity_realised", "1", "Ratio U_el/Δγ of the shortest octave for the realized spectrum of the surface; of a measured surface the shortest octave that, with all below, holds 10 % of the mean square Laplacian; null where that is unknown and without adhesion")
+    real("conformity_realised", "1", "Ratio U_el/Δγ of the shortest octave for the realized spectrum of the \
+         surface; of a measured surface the shortest octave that, with all below, holds 10 % of the mean \
+         square Laplacian; null where that is unknown and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
-    real("persson_tosatti", "1", "Persson-Tosatti ratio U_el/Δγ: elastic energy per area to flatten all roughness over the work of adhesion, continuous spectrum; below 1 full contact is favoured; null for a measured surface and without adhesion")
+    real("persson_tosatti", "1", "Persson-Tosatti ratio U_el/Δγ: elastic energy per area to flatten all \
+         roughness over the work of adhesion, continuous spectrum; below 1 full contact is favoured; null \
+         for a measured surface and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
-    real("persson_tosatti_realised", "1", "Persson-Tosatti ratio U_el/Δγ for the realized spectrum of the surface; null where that is unknown and without adhesion")
+    real("persson_tosatti_realised", "1", "Persson-Tosatti ratio U_el/Δγ for the realized spectrum of the \
+         surface; null where that is unknown and without adhesion")
         .or_null()
         .from("Persson and Tosatti 2001"),
-    real("sticky_line", "1", "Wang-Müser ratio U_el/(2 Δγ) for the realized spectrum of the surface; below 1 the pull-off force is high; null where U_el is unknown and without adhesion")
+    real("sticky_line", "1", "Wang-Müser ratio U_el/(2 Δγ) for the realized spectrum of the surface; below 1 \
+         the pull-off force is high; null where U_el is unknown and without adhesion")
         .or_null()
         .from("Wang and Müser 2022"),
-    real("texture_aspect", "1", "Texture aspect ratio: the larger of texture_slope_ratio and 1/texture_str, the latter where the side is 20 decay lengths or more; null for a generated surface, which is isotropic").or_null(),
-    real("texture_slope_ratio", "1", "Ratio of the rms slopes along the principal axes of the slope tensor, the larger over the smaller; null for a generated surface").or_null(),
-    real("texture_str", "1", "Texture aspect ratio Str: shortest over longest distance at which the autocorrelation decays to 0.2; an upper limit where the longest exceeds half of the side; null for a generated surface").or_null().from("ISO 25178-2"),
-    real("elements_per_wavelength", "1", "Grid points of boundary elements per shortest wavelength, of a measured surface that of its shortest octave with 10 % of the mean square Laplacian; null for asperities").or_null(),
-    real("filter_overshoot", "1", "Height of filtered maxima above the measured heights within one cut-off wavelength, beyond the noise, over h_rms; null for a generated surface").or_null(),
-    real("outlier_share", "1", "Fraction of the points of a measured surface that are isolated beyond 6 robust standard deviations of their neighbours and were not replaced; 0 if none of them matters on the filtered surface; null for a generated surface, and where it was not computed").or_null(),
-    real("line_jump_share", "1", "Rms offset between scan lines of a measured surface that was not removed, over h_rms; 0 without significant offsets; null likewise").or_null(),
-    real("noise_share", "1", "Rms height that the S-filter removed over h_rms, where its spectral density falls less than q^(-1), as that of noise; 0 elsewhere; null likewise").or_null(),
-    real("curvature_ratio", "1", "Curvature of the sharpest summits over that of the sharpest valleys of a measured surface (1 % quantiles of the Laplacian) that is rounded nearly everywhere; null elsewhere, with a stated tip radius, and likewise").or_null(),
+    real("texture_aspect", "1", "Texture aspect ratio: the larger of texture_slope_ratio and 1/texture_str, \
+         the latter where the side is 20 decay lengths or more; null for a generated surface, which is \
+         isotropic").or_null(),
+    real("texture_slope_ratio", "1", "Ratio of the rms slopes along the principal axes of the slope tensor, \
+         the larger over the smaller; null for a generated surface").or_null(),
+    real("texture_str", "1", "Texture aspect ratio Str: shortest over longest distance at which the \
+         autocorrelation decays to 0.2; an upper limit where the longest exceeds half of the side; null for \
+         a generated surface").or_null().from("ISO 25178-2"),
+    real("elements_per_wavelength", "1", "Grid points of boundary elements per shortest wavelength, of a \
+         measured surface that of its shortest octave with 10 % of the mean square Laplacian; null for \
+         asperities").or_null(),
+    real("filter_overshoot", "1", "Height of filtered maxima above the measured heights within one cut-off \
+         wavelength, beyond the noise, over h_rms; null for a generated surface").or_null(),
+    real("outlier_share", "1", "Fraction of the points of a measured surface that are isolated beyond 6 \
+         robust standard deviations of their neighbours and were not replaced; 0 if none of them matters on \
+         the filtered surface; null for a generated surface, and where it was not computed").or_null(),
+    real("line_jump_share", "1", "Rms offset between scan lines of a measured surface that was not removed, \
+         over h_rms; 0 without significant offsets; null likewise").or_null(),
+    real("noise_share", "1", "Rms height that the S-filter removed over h_rms, where its spectral density \
+         falls less than q^(-1), as that of noise; 0 elsewhere; null likewise").or_null(),
+    real("curvature_ratio", "1", "Curvature of the sharpest summits over that of the sharpest valleys of a \
+         measured surface (1 % quantiles of the Laplacian) that is rounded nearly everywhere; null \
+         elsewhere, with a stated tip radius, and likewise").or_null(),
 ];
 
 /// A column of the table `realizations` that another table has as well.
@@ -155,7 +224,8 @@ pub(super) const fn shared(name: &str) -> Column {
     panic!("no such column");
 }
 
-/// Parts of `dissipated` by branch and by kind of event, over E* A0 h_rms and in joule. Each of the two groups sums to `dissipated`.
+/// Parts of
+/// `dissipated` by branch and by kind of event, over E* A0 h_rms and in joule. Each of the two groups sums to `dissipated`.
 macro_rules! parts {
     ($($kind:literal, $_remark:literal, $_colour:literal, $_step:literal, $_avalanche:literal, $of_kind:literal;)+) => {
         parts! { "loading", "of events during loading"; "unloading", "of events during unloading"; $($kind, $of_kind;)+ }
@@ -176,7 +246,8 @@ event_kinds!(parts);
 
 const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
 
-const REALIZATION_COLUMNS: [Column; CASE.len() + PARAMETER_COLUMNS.len() + RESULTS.len() + PART_COLUMNS.len()] =
+const REALIZATION_COLUMNS: [Column;
+    CASE.len() + PARAMETER_COLUMNS.len() + RESULTS.len() + PART_COLUMNS.len()] =
     join(&[CASE, &PARAMETER_COLUMNS, RESULTS, &PART_COLUMNS]);
 
 /// Results of single cycles.
@@ -193,19 +264,36 @@ const SPREADS: &[&[Column]] = &[
     over_realizations!("area_at_max_load", "1", "contact area A/A0 at load reversal", ""),
     over_realizations!("penetration_at_max_load", "1", "mean penetration Δ/h_rms at load reversal", ""),
     over_realizations!("loss", "1", "dissipated energy Θ/(E* A0 h_rms) of the loop", ""),
-    over_realizations!("loss_dk", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms), moments of the continuous spectrum", "Eqs A1-A4"),
-    over_realizations!("loss_dk_realised", "1", "Deng-Kesari estimate Θ_DK/(E* A0 h_rms), moments of the realized surface", "Eqs A1-A4"),
+    over_realizations!(
+        "loss_dk",
+        "1",
+        "Deng-Kesari estimate Θ_DK/(E* A0 h_rms), moments of the continuous spectrum",
+        "Eqs A1-A4"
+    ),
+    over_realizations!(
+        "loss_dk_realised",
+        "1",
+        "Deng-Kesari estimate Θ_DK/(E* A0 h_rms), moments of the realized surface",
+        "Eqs A1-A4"
+    ),
     over_realizations!(
         "loss_touched",
         "1",
-        "sum of the dissipated energies of single isolated asperities that came into contact, over E* A0 h_rms",
+        "sum of the dissipated energies of single isolated asperities that came into contact, over E* A0 \
+         h_rms",
         "Eq A1"
     ),
-    over_realizations!("loss_dalvi", "1", "work of adhesion times contact area at load reversal, over E* A0 h_rms", "Dalvi et al. 2019"),
+    over_realizations!(
+        "loss_dalvi",
+        "1",
+        "work of adhesion times contact area at load reversal, over E* A0 h_rms",
+        "Dalvi et al. 2019"
+    ),
     over_realizations!(
         "loss_pinning",
         "1",
-        "dissipated energy of crack-front pinning, 2 k U_el times contact area at load reversal, over E* A0 h_rms",
+        "dissipated energy of crack-front pinning, 2 k U_el times contact area at load reversal, over E* A0 \
+         h_rms",
         "Sanner et al. 2024"
     ),
     over_realizations!(
@@ -226,25 +314,64 @@ const SPREADS: &[&[Column]] = &[
         "dissipated energy Θ/(E* A0 h_rms), approximate JKR theory from the adhesionless curve",
         "Ciavarella 2018"
     ),
-    over_realizations!("area_adhesionless", "1", "adhesionless contact area A/A0 at F_max, Persson's theory", "Persson 2001"),
+    over_realizations!(
+        "area_adhesionless",
+        "1",
+        "adhesionless contact area A/A0 at F_max, Persson's theory",
+        "Persson 2001"
+    ),
     over_realizations!(
         "area_adhesionless_small",
         "1",
         "adhesionless contact area A/A0 at F_max, small-load limit of boundary-element results",
         "Hyun et al. 2004"
     ),
-    over_realizations!("fuller_tabor", "1", "Fuller-Tabor parameter of the asperities", "Fuller and Tabor 1975"),
+    over_realizations!(
+        "fuller_tabor",
+        "1",
+        "Fuller-Tabor parameter of the asperities",
+        "Fuller and Tabor 1975"
+    ),
     over_realizations!("loss_ratio_dk", "1", "ratio Θ/Θ_DK, loss over loss_dk", ""),
-    over_realizations!("dissipated", "1", "dissipated energy over E* A0 h_rms, summed over the events of the loop", ""),
+    over_realizations!(
+        "dissipated",
+        "1",
+        "dissipated energy over E* A0 h_rms, summed over the events of the loop",
+        ""
+    ),
     over_realizations!("dissipated_j", "J", "dissipated energy, summed over the events of the loop", ""),
 ];
 
 /// Indicators of validity of a row.
 const VALIDITY: &[&[Column]] = &[
-    mean_and_worst!("audit_gap", "max", "Maximum", "energy-balance error |loss_j - dissipated_j| / |loss_j|", ""),
-    mean_and_worst!("tabor_min", "min", "Minimum", "minimum Tabor parameter of the asperities of a surface", "Eq 3"),
-    mean_and_worst!("tabor_mean", "min", "Minimum", "mean Tabor parameter of the asperities of a surface", "Eq 3"),
-    mean_and_worst!("low_tabor_share", "max", "Maximum", "fraction of asperities with a Tabor parameter below 2", "Eq 3"),
+    mean_and_worst!(
+        "audit_gap",
+        "max",
+        "Maximum",
+        "energy-balance error |loss_j - dissipated_j| / |loss_j|",
+        ""
+    ),
+    mean_and_worst!(
+        "tabor_min",
+        "min",
+        "Minimum",
+        "minimum Tabor parameter of the asperities of a surface",
+        "Eq 3"
+    ),
+    mean_and_worst!(
+        "tabor_mean",
+        "min",
+        "Minimum",
+        "mean Tabor parameter of the asperities of a surface",
+        "Eq 3"
+    ),
+    mean_and_worst!(
+        "low_tabor_share",
+        "max",
+        "Maximum",
+        "fraction of asperities with a Tabor parameter below 2",
+        "Eq 3"
+    ),
     mean_and_worst!(
         "absorption_share",
         "max",
@@ -252,7 +379,13 @@ const VALIDITY: &[&[Column]] = &[
         "coalescence energy over dissipated energy, |cover + uncover + merge + split|/|Θ|",
         ""
     ),
-    mean_and_worst!("elements_per_wavelength", "min", "Minimum", "grid points of boundary elements per shortest wavelength", ""),
+    mean_and_worst!(
+        "elements_per_wavelength",
+        "min",
+        "Minimum",
+        "grid points of boundary elements per shortest wavelength",
+        ""
+    ),
     mean_and_worst!("texture_aspect", "max", "Maximum", "texture aspect ratio of a measured surface", ""),
     mean_and_worst!(
         "filter_overshoot",
@@ -262,9 +395,27 @@ const VALIDITY: &[&[Column]] = &[
         ""
     ),
     mean_and_worst!("loss_uncertainty", "max", "Maximum", "resolution of Θ over |Θ|", ""),
-    mean_and_worst!("outlier_share", "max", "Maximum", "fraction of outliers among the points of a measured surface", ""),
-    mean_and_worst!("line_jump_share", "max", "Maximum", "rms offset between the scan lines of a measured surface, over h_rms", ""),
-    mean_and_worst!("noise_share", "max", "Maximum", "rms height of the noise that the S-filter removed, over h_rms", ""),
+    mean_and_worst!(
+        "outlier_share",
+        "max",
+        "Maximum",
+        "fraction of outliers among the points of a measured surface",
+        ""
+    ),
+    mean_and_worst!(
+        "line_jump_share",
+        "max",
+        "Maximum",
+        "rms offset between the scan lines of a measured surface, over h_rms",
+        ""
+    ),
+    mean_and_worst!(
+        "noise_share",
+        "max",
+        "Maximum",
+        "rms height of the noise that the S-filter removed, over h_rms",
+        ""
+    ),
     mean_and_worst!(
         "curvature_ratio",
         "min",
@@ -282,7 +433,13 @@ const VALIDITY: &[&[Column]] = &[
         "sum of covered_count_at_max_load over sum of absorbed and contacting asperities",
         "absorbed fraction of the asperities in contact or absorbed, at load reversal"
     ),
-    mean_and_worst!("contact_count_at_max_load", "min", "Minimum", "number of asperities in contact at load reversal", ""),
+    mean_and_worst!(
+        "contact_count_at_max_load",
+        "min",
+        "Minimum",
+        "number of asperities in contact at load reversal",
+        ""
+    ),
     mean_and_worst!(
         "touching_count_at_max_load",
         "max",
@@ -291,10 +448,26 @@ const VALIDITY: &[&[Column]] = &[
         ""
     ),
     over_surfaces!("summit_count", "number of asperities of a surface", ""),
-    over_surfaces!("conformity", "U_el/Δγ of the shortest octave, continuous spectrum", "Persson and Tosatti 2001"),
-    over_surfaces!("conformity_realised", "U_el/Δγ of the shortest octave, realized spectrum", "Persson and Tosatti 2001"),
-    over_surfaces!("persson_tosatti", "Persson-Tosatti ratio U_el/Δγ, continuous spectrum", "Persson and Tosatti 2001"),
-    over_surfaces!("persson_tosatti_realised", "Persson-Tosatti ratio U_el/Δγ, realized spectrum", "Persson and Tosatti 2001"),
+    over_surfaces!(
+        "conformity",
+        "U_el/Δγ of the shortest octave, continuous spectrum",
+        "Persson and Tosatti 2001"
+    ),
+    over_surfaces!(
+        "conformity_realised",
+        "U_el/Δγ of the shortest octave, realized spectrum",
+        "Persson and Tosatti 2001"
+    ),
+    over_surfaces!(
+        "persson_tosatti",
+        "Persson-Tosatti ratio U_el/Δγ, continuous spectrum",
+        "Persson and Tosatti 2001"
+    ),
+    over_surfaces!(
+        "persson_tosatti_realised",
+        "Persson-Tosatti ratio U_el/Δγ, realized spectrum",
+        "Persson and Tosatti 2001"
+    ),
     over_surfaces!("sticky_line", "Wang-Müser ratio U_el/(2 Δγ), realized spectrum", "Wang and Müser 2022"),
 ];
 
@@ -302,12 +475,35 @@ const COUNTS: &[Column] = &[
     count("planned_count", "Realizations requested by the spec"),
     count("done_count", "Realizations in the means"),
     count("failed_count", "Realizations that failed"),
-    count("unresolved_count", "Realizations with a null dissipated energy, since it is not resolved; they are in the means of the other results").or_null(),
-    count("not_reached_count", "Finished realizations without a result at this load reversal: the load was not reached, or its unloading failed; the reasons are in the column failure of the table cycles").or_null(),
-    real("nominal_area_m2_mean", "m^2", "Mean over realizations: nominal area A0 of the surface or scan").or_null(),
-    real("area_model_ratio", "1", "Expected ratio of the asperity model to boundary elements at this U_el/Δγ: contact area at F_max; null for boundary elements, without interaction, for a texture aspect ratio above 2 and outside the measured range").or_null().from("pipelines/validity.toml"),
-    real("pull_off_model_ratio", "1", "The same ratio of the pull-off force").or_null().from("pipelines/validity.toml"),
-    real("loss_model_ratio", "1", "The same ratio of the dissipated energy").or_null().from("pipelines/validity.toml"),
+    count(
+        "unresolved_count",
+        "Realizations with a null dissipated energy, since it is not resolved; they \
+         are in the means of the other results",
+    )
+    .or_null(),
+    count(
+        "not_reached_count",
+        "Finished realizations without a result at this load reversal: the load was \
+         not reached, or its unloading failed; the reasons are in the column failure of the table cycles",
+    )
+    .or_null(),
+    real("nominal_area_m2_mean", "m^2", "Mean over realizations: nominal area A0 of the surface or scan")
+        .or_null(),
+    real(
+        "area_model_ratio",
+        "1",
+        "Expected ratio of the asperity model to boundary elements at this \
+         U_el/Δγ: contact area at F_max; null for boundary elements, without interaction, for a texture \
+         aspect ratio above 2 and outside the measured range",
+    )
+    .or_null()
+    .from("pipelines/validity.toml"),
+    real("pull_off_model_ratio", "1", "The same ratio of the pull-off force")
+        .or_null()
+        .from("pipelines/validity.toml"),
+    real("loss_model_ratio", "1", "The same ratio of the dissipated energy")
+        .or_null()
+        .from("pipelines/validity.toml"),
     text("caution", "Codes of all warnings of the row by severity, joined by +; empty without warnings"),
 ];
 
@@ -322,7 +518,15 @@ static CASE_COLUMNS: [Column;
         + SPREAD_COLUMNS.len()
         + PART_SPREAD_COLUMNS.len()
         + VALIDITY_COLUMNS.len()
-        + COUNTS.len()] = join(&[CASE, &PARAMETER_COLUMNS, MAX_LOAD, &SPREAD_COLUMNS, &PART_SPREAD_COLUMNS, &VALIDITY_COLUMNS, COUNTS]);
+        + COUNTS.len()] = join(&[
+    CASE,
+    &PARAMETER_COLUMNS,
+    MAX_LOAD,
+    &SPREAD_COLUMNS,
+    &PART_SPREAD_COLUMNS,
+    &VALIDITY_COLUMNS,
+    COUNTS,
+]);
 
 /// Means over realizations.
 pub static CASES: Table = Table {

@@ -1,7 +1,9 @@
 //! `method = "auto"`: the choice between the methods, and its record in a resolved spec.
 //!
-//! A case with a generated surface is chosen from the target spectrum when the spec is read. One with a measured surface needs the scan, which
-//! [`super::Spec::read_choosing`] gives. Where all cases have one choice, the resolved spec has its word in place of `auto`; else it lists the choices.
+//! A case with a generated surface is chosen from the target spectrum when the spec is read. One with a
+//! measured surface needs the scan, which
+//! [`super::Spec::read_choosing`] gives. Where all cases have one choice, the resolved spec has its word in place of `auto`;
+//! else it lists the choices.
 
 use std::ops::Range;
 
@@ -52,13 +54,21 @@ impl Choices {
     /// Checks the number of listed choices.
     pub(super) fn check(&self, at: Option<&Range<usize>>, faults: &mut Faults<'_>) {
         if !self.given.is_empty() && self.given.len() != self.made.len() {
-            let message =
-                format!("`auto_methods` lists {} methods, and {} cases have method = \"auto\"", self.given.len(), self.made.len());
-            faults.add(at.unwrap_or(&(0..0)), message, "remove the line `auto_methods`: the methods are chosen again".to_owned());
+            let message = format!(
+                "`auto_methods` lists {} methods, and {} cases have method = \"auto\"",
+                self.given.len(),
+                self.made.len()
+            );
+            faults.add(
+                at.unwrap_or(&(0..0)),
+                message,
+                "remove the line `auto_methods`: the methods are chosen again".to_owned(),
+            );
         }
     }
 
-    /// The record of the choices: replaces `auto` in the base and in the sweeps if there is one choice for all, and else lists them.
+    /// The record of the choices: replaces `auto` in the base and in the sweeps if there is one choice for
+    /// all, and else lists them.
     pub(super) fn settle(self, base: &mut Values, sweeps: &mut [Sweep]) -> Vec<Method> {
         let Some(first) = self.made.first().copied() else { return Vec::new() };
         let twice = |axis: &Axis| axis.key == KEY && axis.values.len() > 1;
@@ -91,11 +101,14 @@ const KEY: &str = "model.method";
 
 /// The method of a generated surface by its target spectrum; `auto` for a measured one.
 fn of_target(params: &CaseParams) -> Method {
-    let Some(spectrum) = params.surface.generated().map(GeneratedSurface::spectrum) else { return Method::Auto };
+    let Some(spectrum) = params.surface.generated().map(GeneratedSurface::spectrum) else {
+        return Method::Auto;
+    };
     let energy = flattening(&spectrum, params.material.contact_modulus_pa);
     let adhesion = params.material.work_of_adhesion_j_m2;
     let moments = spectrum.moments();
-    let method = Regime::expected(&energy, adhesion, params.cycle.largest_load(), moments.rms_slope()).method();
+    let method =
+        Regime::expected(&energy, adhesion, params.cycle.largest_load(), moments.rms_slope()).method();
     let by_wu = |options: &AsperityOptions| options.jump_in == JumpIn::Wu && !options.allow_low_tabor;
     let needs_range = adhesion > 0.0 && params.asperities().is_some_and(by_wu);
     let sharpest = || Asperity::new(1.0 / (SHARPEST * moments.rms_curvature_1_m()), &params.material);
@@ -115,7 +128,11 @@ pub(super) fn methods(value: &Written<'_>, faults: &mut Faults<'_>) -> Vec<Metho
         };
         if method.is_none() {
             let help = "remove the line: the program writes it into campaign.toml".to_owned();
-            faults.add(&element.span(), "`auto_methods` must list \"asperities\" or \"boundary_elements\"".to_owned(), help);
+            faults.add(
+                &element.span(),
+                "`auto_methods` must list \"asperities\" or \"boundary_elements\"".to_owned(),
+                help,
+            );
         }
         found.extend(method);
     }
@@ -123,7 +140,12 @@ pub(super) fn methods(value: &Written<'_>, faults: &mut Faults<'_>) -> Vec<Metho
 }
 
 /// The choices of a spec whose scans decide, read by `chooser`.
-pub(super) fn chosen(spec: &Spec, text: &str, file: &str, chooser: Chooser<'_>) -> Result<Vec<Method>, SpecErrors> {
+pub(super) fn chosen(
+    spec: &Spec,
+    text: &str,
+    file: &str,
+    chooser: Chooser<'_>,
+) -> Result<Vec<Method>, SpecErrors> {
     let mut faults = Faults::new(text, file);
     let mut methods = Vec::with_capacity(spec.auto_methods.len());
     let mut known: Vec<(usize, Method)> = Vec::new();
@@ -142,7 +164,11 @@ pub(super) fn chosen(spec: &Spec, text: &str, file: &str, chooser: Chooser<'_>) 
             Err((problem, help)) => {
                 let at = text.find("\"auto\"").map_or(0..0, |at| at..at + 6);
                 let file = unit.params.surface.measured().map_or("", |surface| &surface.file);
-                faults.add(&at, format!("`model.method` = \"auto\" cannot be chosen from the scan \"{file}\": {problem}"), help);
+                faults.add(
+                    &at,
+                    format!("`model.method` = \"auto\" cannot be chosen from the scan \"{file}\": {problem}"),
+                    help,
+                );
                 known.push((case, Method::Auto));
                 methods.push(Method::Auto);
             }

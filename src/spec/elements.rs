@@ -37,7 +37,8 @@ impl ElementOptions {
     /// Grid points along the side of a square, whose side is given in shortest wavelengths.
     #[must_use]
     pub fn grid(&self, wavelengths: f64) -> u32 {
-        let automatic = || u32::try_from(points_for(wavelengths)).map_or(MAX_ELEMENTS, |points| points.min(MAX_ELEMENTS));
+        let automatic =
+            || u32::try_from(points_for(wavelengths)).map_or(MAX_ELEMENTS, |points| points.min(MAX_ELEMENTS));
         self.points.unwrap_or_else(automatic)
     }
 
@@ -46,7 +47,9 @@ impl ElementOptions {
     pub fn range(&self, work_length_m: f64, spacing_m: f64) -> Option<f64> {
         match self.attraction {
             Attraction::Bonded { .. } => None,
-            Attraction::Range { range_m } => Some(range_m.unwrap_or_else(|| RANGE * (work_length_m * spacing_m).sqrt())),
+            Attraction::Range { range_m } => {
+                Some(range_m.unwrap_or_else(|| RANGE * (work_length_m * spacing_m).sqrt()))
+            }
         }
     }
 
@@ -57,9 +60,15 @@ impl ElementOptions {
         (loads + 1) as f64 * 2.0 * END * range_m / (self.approach_step * rms_height_m)
     }
 
-    /// Why a range cannot be used on a surface, and what to do: it acts over many times the rms height, which the steps are a part of.
+    /// Why a range cannot be used on a surface, and what to do: it acts over many times the rms height, which
+    /// the steps are a part of.
     #[must_use]
-    pub fn refusal_of_range(&self, range_m: f64, rms_height_m: f64, loads: usize) -> Option<(String, String)> {
+    pub fn refusal_of_range(
+        &self,
+        range_m: f64,
+        rms_height_m: f64,
+        loads: usize,
+    ) -> Option<(String, String)> {
         let steps = self.range_steps(range_m, rms_height_m, loads);
         if steps <= MOST_RANGE_STEPS {
             return None;
@@ -67,18 +76,32 @@ impl ElementOptions {
         // Rounded to two digits, it is below the limit.
         let shorter = 0.95 * range_m * MOST_RANGE_STEPS / steps;
         let problem = format!(
-            "the attraction acts over 15 ρ = {:.2e} m, {:.0} times h_rms: about {steps:.0} steps, more than {MOST_RANGE_STEPS}",
+            "the attraction acts over 15 ρ = {:.2e} m, {:.0} times h_rms: about {steps:.0} steps, more than \
+             {MOST_RANGE_STEPS}",
             END * range_m,
             END * range_m / rms_height_m
         );
-        Some((problem, format!("set boundary_elements.range_m to {shorter:.1e} or less, or increase boundary_elements.approach_step")))
+        Some((
+            problem,
+            format!(
+                "set boundary_elements.range_m to {shorter:.1e} or less, or increase \
+                 boundary_elements.approach_step"
+            ),
+        ))
     }
 
-    /// Why a grid cannot be used, and what to do: too few points per shortest wavelength, negligible adhesion, or a range that traps contact edges on it.
+    /// Why a grid cannot be used, and what to do: too few points per shortest wavelength, negligible
+    /// adhesion, or a range that traps contact edges on it.
     ///
-    /// `length_m` is the side of the square, `wavelengths` its shortest wavelengths, and `work_length_m` is `Δγ/E*` \[m\].
+    /// `length_m` is the side of the square, `wavelengths` its shortest wavelengths, and
+    /// `work_length_m` is `Δγ/E*` \[m\].
     #[must_use]
-    pub fn refusal(&self, length_m: f64, wavelengths: f64, work_length_m: f64) -> Option<(String, &'static str)> {
+    pub fn refusal(
+        &self,
+        length_m: f64,
+        wavelengths: f64,
+        work_length_m: f64,
+    ) -> Option<(String, &'static str)> {
         let grid = self.grid(wavelengths);
         let per_wavelength = f64::from(grid) / wavelengths;
         if per_wavelength < FEWEST_PER_WAVELENGTH {
@@ -98,7 +121,10 @@ impl ElementOptions {
         let weakness = work_length_m / spacing;
         if weakness > 0.0 && weakness < LEAST_WORK {
             return Some((
-                format!("Δγ/(E* dx) is {weakness:.1e} on this grid, below {}: adhesion is negligible", short(LEAST_WORK)),
+                format!(
+                    "Δγ/(E* dx) is {weakness:.1e} on this grid, below {}: adhesion is negligible",
+                    short(LEAST_WORK)
+                ),
                 "increase material.work_of_adhesion_j_m2, or use 0 with model.method = \"asperities\"",
             ));
         }
@@ -112,7 +138,8 @@ impl ElementOptions {
                     short(range),
                     short(spacing)
                 ),
-                "increase boundary_elements.range_m or boundary_elements.points, or use attraction = \"bonded\"",
+                "increase boundary_elements.range_m or boundary_elements.points, or use attraction = \
+                 \"bonded\"",
             ));
         }
         None
@@ -126,13 +153,23 @@ fn short_points(points: f64) -> String {
 
 /// Checks the requirements of boundary elements on the other values of their case. The grid of a measured
 /// surface is checked when its file has been read.
-pub(super) fn check_elements(case: &CaseParams, elements: &ElementOptions, values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
+pub(super) fn check_elements(
+    case: &CaseParams,
+    elements: &ElementOptions,
+    values: &Values,
+    origins: &[Origin],
+    faults: &mut Faults<'_>,
+) {
     if case.material.work_of_adhesion_j_m2 == 0.0
         && let Some(span) = latest(&["material.work_of_adhesion_j_m2", "model.method"], origins)
     {
-        let message =
-            "boundary elements need adhesion: `material.work_of_adhesion_j_m2` is 0, and their law of attraction then has no range";
-        faults.add(&span, message.to_owned(), "use a positive work of adhesion, or method = \"asperities\"".to_owned());
+        let message = "boundary elements need adhesion: `material.work_of_adhesion_j_m2` is 0, and their law \
+             of attraction then has no range";
+        faults.add(
+            &span,
+            message.to_owned(),
+            "use a positive work of adhesion, or method = \"asperities\"".to_owned(),
+        );
         return;
     }
     let boundary = values.asperities.boundary;
@@ -140,7 +177,8 @@ pub(super) fn check_elements(case: &CaseParams, elements: &ElementOptions, value
         && case.surface.is_periodic()
         && let Some(span) = latest(&["model.boundary", "model.method"], origins)
     {
-        let message = format!("`model.boundary` is \"{}\", and boundary elements are periodic", boundary.word());
+        let message =
+            format!("`model.boundary` is \"{}\", and boundary elements are periodic", boundary.word());
         faults.add(&span, message, "write boundary = \"periodic\", or method = \"asperities\"".to_owned());
     }
     if let Some(surface) = case.surface.generated() {
@@ -153,7 +191,12 @@ pub(super) fn check_elements(case: &CaseParams, elements: &ElementOptions, value
 type OnGenerated<'a> = (&'a ElementOptions, &'a GeneratedSurface);
 
 /// Refuses a grid that cannot be used on a generated surface.
-fn check_grid(case: &CaseParams, (elements, surface): OnGenerated<'_>, origins: &[Origin], faults: &mut Faults<'_>) {
+fn check_grid(
+    case: &CaseParams,
+    (elements, surface): OnGenerated<'_>,
+    origins: &[Origin],
+    faults: &mut Faults<'_>,
+) {
     let wavelengths = f64::from(surface.magnification);
     let keys = [
         "boundary_elements.points",
@@ -163,7 +206,8 @@ fn check_grid(case: &CaseParams, (elements, surface): OnGenerated<'_>, origins: 
         "surface.magnification",
         "model.method",
     ];
-    if let Some((message, help)) = elements.refusal(surface.length_m, wavelengths, case.material.adhesion_length_m())
+    if let Some((message, help)) =
+        elements.refusal(surface.length_m, wavelengths, case.material.adhesion_length_m())
         && let Some(span) = latest(&keys, origins)
     {
         faults.add(&span, message, help.to_owned());
@@ -171,11 +215,22 @@ fn check_grid(case: &CaseParams, (elements, surface): OnGenerated<'_>, origins: 
 }
 
 /// Refuses a range that takes too many steps on a generated surface.
-fn check_range(case: &CaseParams, (elements, surface): OnGenerated<'_>, origins: &[Origin], faults: &mut Faults<'_>) {
+fn check_range(
+    case: &CaseParams,
+    (elements, surface): OnGenerated<'_>,
+    origins: &[Origin],
+    faults: &mut Faults<'_>,
+) {
     let spacing = surface.length_m / f64::from(elements.grid(f64::from(surface.magnification)));
     let Some(range) = elements.range(case.material.adhesion_length_m(), spacing) else { return };
-    let keys = ["boundary_elements.range_m", "boundary_elements.attraction", "boundary_elements.approach_step", "surface.rms_height_m"];
-    if let Some((message, help)) = elements.refusal_of_range(range, surface.rms_height_m, case.cycle.max_load.len())
+    let keys = [
+        "boundary_elements.range_m",
+        "boundary_elements.attraction",
+        "boundary_elements.approach_step",
+        "surface.rms_height_m",
+    ];
+    if let Some((message, help)) =
+        elements.refusal_of_range(range, surface.rms_height_m, case.cycle.max_load.len())
         && let Some(span) = latest(&keys, origins)
     {
         faults.add(&span, message, help);
@@ -184,7 +239,10 @@ fn check_range(case: &CaseParams, (elements, surface): OnGenerated<'_>, origins:
 
 /// The later written of some values; nothing if one of them is not known.
 fn latest(paths: &[&str], origins: &[Origin]) -> Option<Range<usize>> {
-    let places: Vec<usize> = paths.iter().filter_map(|path| path.split_once('.').and_then(|(table, name)| find(table, name))).collect();
+    let places: Vec<usize> = paths
+        .iter()
+        .filter_map(|path| path.split_once('.').and_then(|(table, name)| find(table, name)))
+        .collect();
     if places.iter().any(|place| matches!(origins[*place], Origin::Faulty)) {
         return None;
     }

@@ -15,7 +15,8 @@ pub(super) type Entry<'a, 't> = (&'a str, Range<usize>, &'a Spanned<DeValue<'t>>
 
 /// The entries of a table in the order written.
 pub(super) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<Entry<'a, 't>> {
-    let mut entries: Vec<Entry<'a, 't>> = table.iter().map(|(key, value)| (key.get_ref().as_ref(), key.span(), value)).collect();
+    let mut entries: Vec<Entry<'a, 't>> =
+        table.iter().map(|(key, value)| (key.get_ref().as_ref(), key.span(), value)).collect();
     entries.sort_by_key(|(_, span, _)| span.start);
     entries
 }
@@ -41,7 +42,12 @@ pub(super) fn keys<'a, 't>(
         } else {
             faults.add_with(&span, || {
                 let own: Vec<_> = names(table).collect();
-                let help = lost(name, &own, |other| format!("`{name}` belongs in [{other}]"), &format!("keys of [{table}]"));
+                let help = lost(
+                    name,
+                    &own,
+                    |other| format!("`{name}` belongs in [{other}]"),
+                    &format!("keys of [{table}]"),
+                );
                 (format!("unknown key `{}` in [{table}]", shown(name)), Some(help))
             });
         }
@@ -73,10 +79,11 @@ fn of_symbol(unknown: &str) -> Option<(&'static str, &'static str, &'static str)
         "hrms" | "rmsheight" | "rms" | "sq" | "rmsroughness" => ("surface", "rms_height_m", "h_rms"),
         "h" | "hurstexponent" => ("surface", "hurst", "H"),
         "l" | "size" | "lateralsize" => ("surface", "length_m", "L, the side of the square,"),
-        "e" | "estar" | "youngsmodulus" | "youngmodulus" | "modulus" | "reducedmodulus" | "elasticmodulus" => {
-            ("material", "contact_modulus_pa", "E* = E/(1 − ν²)")
+        "e" | "estar" | "youngsmodulus" | "youngmodulus" | "modulus" | "reducedmodulus"
+        | "elasticmodulus" => ("material", "contact_modulus_pa", "E* = E/(1 − ν²)"),
+        "deltagamma" | "dgamma" | "gamma" | "δγ" | "γ" | "adhesion" | "surfaceenergy" => {
+            ("material", "work_of_adhesion_j_m2", "Δγ")
         }
-        "deltagamma" | "dgamma" | "gamma" | "δγ" | "γ" | "adhesion" | "surfaceenergy" => ("material", "work_of_adhesion_j_m2", "Δγ"),
         "epsilon" | "eps" | "ε" | "range" => ("material", "interaction_range_m", "ε"),
         "fmax" | "load" | "maxforce" | "force" => ("cycle", "max_load", "F_max/(E* A0)"),
         "step" | "outputstep" => ("cycle", "approach_step", "the output step Δ/h_rms"),

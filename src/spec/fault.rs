@@ -63,7 +63,12 @@ impl SpecErrors {
     /// The file could not be read at all.
     pub(super) fn unreadable(file: &str, cause: &str) -> Self {
         let message = format!("cannot read the spec: {cause}");
-        Self { file: file.to_owned(), faults: vec![Fault { message, help: None, place: None }], more: 0, settings: Vec::new() }
+        Self {
+            file: file.to_owned(),
+            faults: vec![Fault { message, help: None, place: None }],
+            more: 0,
+            settings: Vec::new(),
+        }
     }
 
     /// The file is no text: `valid` bytes of it are.
@@ -71,8 +76,17 @@ impl SpecErrors {
         let message = "cannot read the spec: not UTF-8 text".to_owned();
         let help = Some("save the file as UTF-8".to_owned());
         let text = String::from_utf8_lossy(bytes);
-        let place = Some(Place::new(&text, &line_starts(&text), &(valid..valid + char::REPLACEMENT_CHARACTER.len_utf8())));
-        Self { file: file.to_owned(), faults: vec![Fault { message, help, place }], more: 0, settings: Vec::new() }
+        let place = Some(Place::new(
+            &text,
+            &line_starts(&text),
+            &(valid..valid + char::REPLACEMENT_CHARACTER.len_utf8()),
+        ));
+        Self {
+            file: file.to_owned(),
+            faults: vec![Fault { message, help, place }],
+            more: 0,
+            settings: Vec::new(),
+        }
     }
 }
 
@@ -121,7 +135,8 @@ const WINDOW: usize = 100;
 const BEFORE: usize = 40;
 
 impl Place {
-    /// The place of a range of bytes, which need not lie within the text nor on the bounds of characters. `starts` are those of the text's lines.
+    /// The place of a range of bytes, which need not lie within the text nor on the bounds of characters.
+    /// `starts` are those of the text's lines.
     fn new(text: &str, starts: &[usize], span: &Range<usize>) -> Self {
         let start = boundary(text, span.start);
         let end = boundary(text, span.end).max(start);
@@ -133,15 +148,18 @@ impl Place {
         // A byte order mark is no character that an editor shows or counts.
         let hidden = usize::from(line_text.starts_with('\u{feff}'));
         let column = before.chars().count().saturating_sub(hidden);
-        let marked = text.get(start..end).and_then(|part| part.split(['\n', '\r']).next()).unwrap_or_default();
+        let marked =
+            text.get(start..end).and_then(|part| part.split(['\n', '\r']).next()).unwrap_or_default();
 
         let from = if column > WINDOW - 10 { column - BEFORE } else { 0 };
         let shown: Vec<char> = line_text.chars().skip(hidden + from).take(WINDOW).collect();
         let more = line_text.chars().count() > hidden + from + shown.len();
         let lead = if from > 0 { "…" } else { "" };
         let tail = if more { "…" } else { "" };
-        // Control characters could move the cursor of a terminal; tabs stay, and the carets repeat them to stay below.
-        let excerpt: String = shown.iter().map(|&c| if c != '\t' && c.is_control() { '\u{fffd}' } else { c }).collect();
+        // Control characters could move the cursor of a terminal; tabs stay, and the carets repeat them to
+        // stay below.
+        let excerpt: String =
+            shown.iter().map(|&c| if c != '\t' && c.is_control() { '\u{fffd}' } else { c }).collect();
         let offset = column - from;
         let pad: String = shown.iter().take(offset).map(|&c| if c == '\t' { '\t' } else { ' ' }).collect();
         let width = marked.chars().count().min(shown.len().saturating_sub(offset)).max(1);
@@ -188,7 +206,14 @@ pub(super) struct Faults<'t> {
 impl<'t> Faults<'t> {
     /// No fault yet.
     pub(super) fn new(text: &'t str, file: &str) -> Self {
-        Self { text, file: file.to_owned(), starts: line_starts(text), found: Vec::new(), seen: HashSet::new(), more: 0 }
+        Self {
+            text,
+            file: file.to_owned(),
+            starts: line_starts(text),
+            found: Vec::new(),
+            seen: HashSet::new(),
+            more: 0,
+        }
     }
 
     /// Adds a fault; a second one with the same words at the same place says nothing new.

@@ -75,7 +75,13 @@ impl Figures {
 impl fmt::Display for Figures {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let formats: Vec<String> = self.format.iter().map(|format| format!("\"{format}\"")).collect();
-        write!(f, "{{ format = [{}], width_mm = {:?}, font = \"{}\" }}", formats.join(", "), self.width_mm, self.font)
+        write!(
+            f,
+            "{{ format = [{}], width_mm = {:?}, font = \"{}\" }}",
+            formats.join(", "),
+            self.width_mm,
+            self.font
+        )
     }
 }
 
@@ -94,7 +100,8 @@ pub(super) fn figures(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Fi
             "font" => read.font = font(written, faults)?,
             unknown => {
                 let listed = format!("keys of `figures`: {}", TAKES.join(", "));
-                let help = nearest(unknown, TAKES).map_or_else(|| listed.clone(), |near| format!("did you mean `{near}`? {listed}"));
+                let help = nearest(unknown, TAKES)
+                    .map_or_else(|| listed.clone(), |near| format!("did you mean `{near}`? {listed}"));
                 faults.add(&span, format!("unknown key `{}` in `figures`", shown(unknown)), help);
                 return None;
             }
@@ -109,7 +116,8 @@ fn formats(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Vec<&'static 
         return word("figures.format", &FORMATS, value, faults).map(|format| vec![format]);
     }
     let elements = array("figures.format", "strings", value, faults)?;
-    let read: Vec<_> = elements.iter().map(|element| word("figures.format", &FORMATS, element, faults)).collect();
+    let read: Vec<_> =
+        elements.iter().map(|element| word("figures.format", &FORMATS, element, faults)).collect();
     let said: Vec<_> = read.into_iter().collect::<Option<_>>()?;
     Some(FORMATS.into_iter().filter(|format| said.contains(format)).collect())
 }
@@ -118,14 +126,22 @@ fn formats(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Vec<&'static 
 fn font(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<String> {
     let span = value.span();
     let DeValue::String(found) = value.get_ref() else {
-        wrong_type("figures.font", "a string", value.get_ref(), &span, "write the name of a font family in quotes".to_owned(), faults);
+        wrong_type(
+            "figures.font",
+            "a string",
+            value.get_ref(),
+            &span,
+            "write the name of a font family in quotes".to_owned(),
+            faults,
+        );
         return None;
     };
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == ' ' || c == '-';
     if (1..=LONGEST_FONT).contains(&found.len()) && found.chars().all(is_plain) {
         return Some(found.to_string());
     }
-    let message = format!("`figures.font` cannot be {}: not the name of a font family", faults.written(&span));
+    let message =
+        format!("`figures.font` cannot be {}: not the name of a font family", faults.written(&span));
     faults.add(&span, message, format!("use 1 to {LONGEST_FONT} letters, digits, spaces and -"));
     None
 }

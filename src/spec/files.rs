@@ -1,7 +1,9 @@
 //! Files of measured surfaces: checksums and formats.
 //!
-//! Tasks are keyed by the content of a file, not by its name. A resolved spec (`campaign.toml`) has the checksums in its table `[files]`, so that the status of a finished
-//! run is known without the files. Its relative names start at its own folder; those of other specs start at the working directory or at the folder of the spec.
+//! Tasks are keyed by the content of a file, not by its name. A resolved spec
+//! (`campaign.toml`) has the checksums in its table `[files]`, so that the status of a finished run is known
+//! without the files. Its relative names start at its own folder; those of other specs start at the working
+//! directory or at the folder of the spec.
 
 use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
@@ -19,20 +21,38 @@ use crate::model::{MeasuredSurface, SurfaceSource};
 use crate::paths::whole;
 
 /// Reads the table `[files]`.
-pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Faults<'_>) -> BTreeMap<String, (String, Range<usize>)> {
+pub(super) fn files(
+    written: &Written<'_>,
+    span: &Range<usize>,
+    faults: &mut Faults<'_>,
+) -> BTreeMap<String, (String, Range<usize>)> {
     let mut found = BTreeMap::new();
     let DeValue::Table(table) = written.get_ref() else {
-        wrong_type("files", "a table", written.get_ref(), span, "write [files] on a line of its own".to_owned(), faults);
+        wrong_type(
+            "files",
+            "a table",
+            written.get_ref(),
+            span,
+            "write [files] on a line of its own".to_owned(),
+            faults,
+        );
         return found;
     };
     for (name, span, value) in entries(table) {
         match value.get_ref() {
-            DeValue::String(digest) if digest.len() == 64 && digest.bytes().all(|c| matches!(c, b'0'..=b'9' | b'a'..=b'f')) => {
+            DeValue::String(digest)
+                if digest.len() == 64 && digest.bytes().all(|c| matches!(c, b'0'..=b'9' | b'a'..=b'f')) =>
+            {
                 found.insert(name.to_owned(), (digest.to_string(), span));
             }
             _ => {
-                let help = "write the 64 hexadecimal digits that `b3sum` prints, or remove the line".to_owned();
-                faults.add(&span, "an entry of [files] must be the BLAKE3 checksum of a file".to_owned(), help);
+                let help =
+                    "write the 64 hexadecimal digits that `b3sum` prints, or remove the line".to_owned();
+                faults.add(
+                    &span,
+                    "an entry of [files] must be the BLAKE3 checksum of a file".to_owned(),
+                    help,
+                );
             }
         }
     }
@@ -40,11 +60,19 @@ pub(super) fn files(written: &Written<'_>, span: &Range<usize>, faults: &mut Fau
 }
 
 /// Refuses the hash of a file that no case names, and gives the others.
-pub(super) fn named(files: BTreeMap<String, (String, Range<usize>)>, cases: &[Case], faults: &mut Faults<'_>) -> BTreeMap<String, String> {
+pub(super) fn named(
+    files: BTreeMap<String, (String, Range<usize>)>,
+    cases: &[Case],
+    faults: &mut Faults<'_>,
+) -> BTreeMap<String, String> {
     let wanted: HashSet<&str> = measured(cases).map(|surface| surface.file.as_str()).collect();
     for (name, (_, span)) in files.iter().filter(|(name, _)| !wanted.contains(name.as_str())) {
         let message = format!("[files] has a checksum of \"{}\", which is not used by any case", shown(name));
-        faults.add(span, message, "remove the line, or name the file as surface.file exactly as it is written here".to_owned());
+        faults.add(
+            span,
+            message,
+            "remove the line, or name the file as surface.file exactly as it is written here".to_owned(),
+        );
     }
     files.into_iter().map(|(name, (digest, _))| (name, digest)).collect()
 }
@@ -54,7 +82,8 @@ fn measured(cases: &[Case]) -> impl Iterator<Item = &MeasuredSurface> {
     cases.iter().filter_map(|case| case.params.surface.measured())
 }
 
-/// The spec with the hashes of all files that it names, and of no others. Files that are only in the spec's `folder` are named with it.
+/// The spec with the hashes of all files that it names, and of no others. Files that are only in the spec's
+/// `folder` are named with it.
 pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) -> Result<Spec, SpecErrors> {
     let known = std::mem::take(&mut spec.files);
     let mut faults = Faults::new(text, file);
@@ -100,8 +129,11 @@ pub(super) fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
         SurfaceSource::Generated(_) => None,
     });
     let own = own.chain([&mut spec.base.measured.file]);
-    let axes = spec.sweeps.iter_mut().flat_map(|sweep| &mut sweep.axes).filter(|axis| axis.key == "surface.file");
-    let swept = axes.flat_map(|axis| &mut axis.values).filter_map(|value| if let Value::Text(name) = value { Some(name) } else { None });
+    let axes =
+        spec.sweeps.iter_mut().flat_map(|sweep| &mut sweep.axes).filter(|axis| axis.key == "surface.file");
+    let swept = axes
+        .flat_map(|axis| &mut axis.values)
+        .filter_map(|value| if let Value::Text(name) = value { Some(name) } else { None });
     for name in own.chain(swept) {
         if let Some(found) = moved.get(name) {
             name.clone_from(found);
@@ -109,7 +141,8 @@ pub(super) fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
     }
 }
 
-/// The name by which a file is found: its own from the working directory, or with the spec's folder before it if it is only there.
+/// The name by which a file is found: its own from the working directory, or with the spec's folder before it
+/// if it is only there.
 fn located(name: &str, folder: &Path) -> Result<String, Refusal> {
     let (here, beside) = (Path::new(name), folder.join(name));
     if here.is_absolute() || folder.as_os_str().is_empty() || !beside.exists() {
@@ -122,8 +155,13 @@ fn located(name: &str, folder: &Path) -> Result<String, Refusal> {
     if same(here, &beside) {
         return Ok(name.to_owned());
     }
-    let problem = "two different files have this name, in the working directory and in the folder of the spec".to_owned();
-    Err(Refusal { problem, help: format!("write {}, or the absolute path of the other one", beside.display()) })
+    let problem =
+        "two different files have this name, in the working directory and in the folder of the spec"
+            .to_owned();
+    Err(Refusal {
+        problem,
+        help: format!("write {}, or the absolute path of the other one", beside.display()),
+    })
 }
 
 /// True if two paths lead to one file, or to files of one content.
@@ -134,11 +172,14 @@ fn same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// The name by which a file of a resolved spec is found: from the folder of the spec, or else from the working directory. Of two different files, the one with the
-/// checksum `digest` is meant. A file that is in neither place has the name that it would have in the first.
+/// The name by which a file of a resolved spec is found: from the folder of the spec, or else from the
+/// working directory. Of two different files, the one with the checksum `digest` is meant. A file that is in
+/// neither place has the name that it would have in the first.
 fn of_resolved(name: &str, folder: &Path, digest: &str) -> String {
     let (here, beside) = (Path::new(name), folder.join(name));
-    let from_here = here.exists() && (!beside.exists() || !same(here, &beside) && digest_of_file(here).is_ok_and(|found| found == digest));
+    let from_here = here.exists()
+        && (!beside.exists()
+            || !same(here, &beside) && digest_of_file(here).is_ok_and(|found| found == digest));
     if here.is_absolute() || from_here {
         return name.to_owned();
     }
@@ -152,7 +193,8 @@ fn tidy(path: &Path) -> PathBuf {
     here.ok().and_then(|here| whole.strip_prefix(here).ok().map(Path::to_owned)).unwrap_or(whole)
 }
 
-/// The hash of a file in a format that is read, `hashed` if it is known. The format comes first: a file in another one is not read to its end.
+/// The hash of a file in a format that is read, `hashed` if it is known. The format comes first: a file in
+/// another one is not read to its end.
 fn look(name: &str, folder: &Path, dataset: &str, hashed: Option<&String>) -> Result<String, Refusal> {
     let path = Path::new(name);
     let unreadable = |error: std::io::Error| {

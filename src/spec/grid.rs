@@ -1,4 +1,5 @@
-//! From a draft to the cases: sweeps multiplied out, equal cases joined, and what no single value shows checked.
+//! From a draft to the cases: sweeps multiplied out, equal cases joined, and what no single value shows
+//! checked.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Range;
@@ -14,16 +15,31 @@ use super::number::short;
 use super::sweep::{AxisDraft, SweepDraft};
 use super::values::Values;
 use super::walk::{Draft, Origin, written};
-use crate::model::{Boundary, CaseParams, Choice, Detrend, GeneratedSurface, MeasuredSurface, Method, SurfaceSource};
+use crate::model::{
+    Boundary, CaseParams, Choice, Detrend, GeneratedSurface, MeasuredSurface, Method, SurfaceSource,
+};
 
 use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
 
 /// The sweep that a case without sweeps belongs to.
 const BASE: &str = "base";
 
-/// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no name.
+/// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no
+/// name.
 pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
-    let Draft { name, seed, realizations, figures, realizations_at, base, origins, sweeps, files, auto_methods, auto_at } = draft;
+    let Draft {
+        name,
+        seed,
+        realizations,
+        figures,
+        realizations_at,
+        base,
+        origins,
+        sweeps,
+        files,
+        auto_methods,
+        auto_at,
+    } = draft;
     let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
     if too_many(&read, faults) {
         return None;
@@ -31,13 +47,14 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     let mut base = base;
     let mut cases = Cases::default();
     let (mut choices, mut auto_cases) = (Choices::of(auto_methods), Vec::new());
-    let mut add = |mut values: Values, origins: &[Origin], swept: &[usize], sweep: &str, faults: &mut Faults<'_>| {
-        complete(&mut values, origins);
-        let is_auto = choices.choose(&mut values);
-        let params = values.case();
-        check(&params, &values, (origins, swept), faults);
-        auto_cases.extend(Some(cases.add(sweep, params)).filter(|_| is_auto));
-    };
+    let mut add =
+        |mut values: Values, origins: &[Origin], swept: &[usize], sweep: &str, faults: &mut Faults<'_>| {
+            complete(&mut values, origins);
+            let is_auto = choices.choose(&mut values);
+            let params = values.case();
+            check(&params, &values, (origins, swept), faults);
+            auto_cases.extend(Some(cases.add(sweep, params)).filter(|_| is_auto));
+        };
     if sweeps.is_empty() {
         add(base.clone(), &origins, &[], BASE, faults);
     }
@@ -63,7 +80,19 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     // Of cases that are all chosen the places are of no use.
     auto_cases.retain(|_| auto_methods.contains(&Method::Auto));
     let (cases, absolute_files) = (cases.list, BTreeSet::new());
-    Some(Spec { name: name?, seed, realizations, figures, cases, base, sweeps, auto_methods, auto_cases, files, absolute_files })
+    Some(Spec {
+        name: name?,
+        seed,
+        realizations,
+        figures,
+        cases,
+        base,
+        sweeps,
+        auto_methods,
+        auto_cases,
+        files,
+        absolute_files,
+    })
 }
 
 /// True if the sweeps make more cases than allowed, found without making them.
@@ -71,7 +100,8 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
     let mut total: u128 = 0;
     let mut first_beyond: Option<&Range<usize>> = None;
     for sweep in sweeps {
-        let count = sweep.axes.iter().fold(1_u128, |count, axis| count.saturating_mul(axis.values.len() as u128));
+        let count =
+            sweep.axes.iter().fold(1_u128, |count, axis| count.saturating_mul(axis.values.len() as u128));
         total = total.saturating_add(count);
         if total > u128::from(MAX_CASES) {
             first_beyond = first_beyond.or(Some(&sweep.span));
@@ -86,7 +116,12 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
 }
 
 /// Refuses a number of tasks above the maximum: the data of all tasks must fit into memory.
-fn bound_tasks(cases: &[Case], realizations: Realizations, at: Option<&Range<usize>>, faults: &mut Faults<'_>) {
+fn bound_tasks(
+    cases: &[Case],
+    realizations: Realizations,
+    at: Option<&Range<usize>>,
+    faults: &mut Faults<'_>,
+) {
     let most = realizations.most();
     let mut surfaces: HashSet<String> = HashSet::new();
     let mut tasks = 0;
@@ -96,10 +131,15 @@ fn bound_tasks(cases: &[Case], realizations: Realizations, at: Option<&Range<usi
     }
     if tasks > MAX_TASKS {
         let message = format!(
-            "{} cases x {most} realizations make {tasks} tasks (cycles, and two for each surface): at most {MAX_TASKS} are allowed",
+            "{} cases x {most} realizations make {tasks} tasks (cycles, and two for each surface): at most \
+             {MAX_TASKS} are allowed",
             cases.len()
         );
-        faults.add(at.unwrap_or(&(0..0)), message, "reduce `realizations`, or split the sweeps into several specs".to_owned());
+        faults.add(
+            at.unwrap_or(&(0..0)),
+            message,
+            "reduce `realizations`, or split the sweeps into several specs".to_owned(),
+        );
     }
 }
 
@@ -132,7 +172,8 @@ struct Cases {
 impl Cases {
     /// Adds a case, or the sweep's name to an equal one; gives its place.
     fn add(&mut self, sweep: &str, params: CaseParams) -> usize {
-        // Every value is finite and none is a zero with a sign, so that equal cases are written alike, and only they.
+        // Every value is finite and none is a zero with a sign, so that equal cases are written alike, and
+        // only they.
         let place = *self.places.entry(format!("{params:?}")).or_insert(self.list.len());
         match self.list.get_mut(place) {
             Some(case) if case.sweeps.iter().any(|known| known == sweep) => {}
@@ -143,8 +184,8 @@ impl Cases {
     }
 }
 
-/// Sets the default that depends on another value: of a periodic surface the mean alone is removed, since a plane breaks its
-/// periodicity.
+/// Sets the default that depends on another value: of a periodic surface the mean alone is removed, since a
+/// plane breaks its periodicity.
 fn complete(values: &mut Values, origins: &[Origin]) {
     let unwritten = |key: usize| matches!(origins[key], Origin::Default);
     if values.measured.periodic && find("surface", "detrend").is_some_and(unwritten) {
@@ -156,14 +197,21 @@ fn complete(values: &mut Values, origins: &[Origin]) {
 type Written<'a> = (&'a [Origin], &'a [usize]);
 
 /// Checks the requirements of a measured surface on the other values of its case.
-fn check_measured(case: &CaseParams, surface: &MeasuredSurface, (origins, swept): Written<'_>, faults: &mut Faults<'_>) {
+fn check_measured(
+    case: &CaseParams,
+    surface: &MeasuredSurface,
+    (origins, swept): Written<'_>,
+    faults: &mut Faults<'_>,
+) {
     let of_sweep = |name: &str| find("surface", name).is_some_and(|key| swept.contains(&key));
     for name in GENERATED {
         // If one of the two is in the base and the other in a sweep, the spec has both kinds of surface.
         if of_sweep(name) == of_sweep("file")
             && let Some(span) = written(find("surface", name), origins)
         {
-            let message = format!("`surface.{name}` describes a generated surface, and `surface.file` names a measured one");
+            let message = format!(
+                "`surface.{name}` describes a generated surface, and `surface.file` names a measured one"
+            );
             faults.add(&span, message, "remove one of the two keys".to_owned());
         }
     }
@@ -172,8 +220,12 @@ fn check_measured(case: &CaseParams, surface: &MeasuredSurface, (origins, swept)
         && let Some(span) = written(find("surface", "detrend"), origins)
     {
         let word = surface.detrend.word();
-        let message = format!("`surface.detrend` is \"{word}\", and `surface.periodic` is true: the removed shape is not periodic");
-        let help = "write detrend = \"mean\" (the default of a periodic surface), or periodic = false".to_owned();
+        let message = format!(
+            "`surface.detrend` is \"{word}\", and `surface.periodic` is true: the removed shape is not \
+             periodic"
+        );
+        let help =
+            "write detrend = \"mean\" (the default of a periodic surface), or periodic = false".to_owned();
         faults.add(&span, message, help);
     }
     if !surface.periodic && case.asperities().is_some_and(|options| options.boundary == Boundary::Periodic) {
@@ -181,7 +233,8 @@ fn check_measured(case: &CaseParams, surface: &MeasuredSurface, (origins, swept)
         let of_surface = |name: &str| written(find("surface", name), origins);
         if let Some(span) = boundary.or_else(|| of_surface("periodic")).or_else(|| of_surface("file")) {
             let message = "a non-periodic measured surface requires model.boundary = \"isolated\"".to_owned();
-            let help = "write model.boundary = \"isolated\", or surface.periodic = true for a periodic scan".to_owned();
+            let help = "write model.boundary = \"isolated\", or surface.periodic = true for a periodic scan"
+                .to_owned();
             faults.add(&span, message, help);
         }
     }
@@ -204,7 +257,8 @@ fn check_generated(surface: &GeneratedSurface, origins: &[Origin], faults: &mut 
         && let Some(span) = blamed(["rms_height_m", "length_m"], origins)
     {
         let (height, length) = (short(surface.rms_height_m), short(surface.length_m));
-        let message = format!("`surface.rms_height_m`, {height} m, must be less than `surface.length_m`, {length} m");
+        let message =
+            format!("`surface.rms_height_m`, {height} m, must be less than `surface.length_m`, {length} m");
         faults.add(&span, message, "both are in metres".to_owned());
     }
     let grid = surface.grid();
@@ -221,7 +275,8 @@ fn check_generated(surface: &GeneratedSurface, origins: &[Origin], faults: &mut 
         && let Some(span) = blamed(keys, origins)
     {
         let message = format!("{}: their number along a side must be even", made());
-        let help = "choose an even product of `magnification` and `points_per_shortest_wavelength`".to_owned();
+        let help =
+            "choose an even product of `magnification` and `points_per_shortest_wavelength`".to_owned();
         faults.add(&span, message, help);
     }
 }
@@ -244,7 +299,9 @@ fn blamed(keys: [&str; 2], origins: &[Origin]) -> Option<Range<usize>> {
 
 /// A sweep as written in the spec.
 fn sweep(draft: &SweepDraft) -> Sweep {
-    let axis =
-        |axis: &AxisDraft| Axis { key: KEYS[axis.key].path, values: axis.values.iter().map(|value| value.get_ref().clone()).collect() };
+    let axis = |axis: &AxisDraft| Axis {
+        key: KEYS[axis.key].path,
+        values: axis.values.iter().map(|value| value.get_ref().clone()).collect(),
+    };
     Sweep { name: draft.name.clone(), axes: draft.axes.iter().map(axis).collect() }
 }

@@ -39,7 +39,9 @@ enum Sorted {
 impl From<Value> for Sorted {
     fn from(value: Value) -> Self {
         match value {
-            Value::Object(members) => Self::Members(members.into_iter().map(|(name, value)| (name, value.into())).collect()),
+            Value::Object(members) => {
+                Self::Members(members.into_iter().map(|(name, value)| (name, value.into())).collect())
+            }
             Value::Array(items) => Self::Items(items.into_iter().map(Self::from).collect()),
             plain => Self::Plain(plain),
         }
@@ -48,12 +50,15 @@ impl From<Value> for Sorted {
 
 /// The schema (draft 2020-12) as indented JSON with a final newline.
 ///
-/// It has every key with type, range, default and meaning. Rules that join several keys are checked by the program only.
+/// It has every key with type, range, default and meaning. Rules that join several keys are checked by the
+/// program only.
 #[must_use]
 pub fn json_schema() -> String {
     let definitions: BTreeMap<&str, Value> = KEYS.iter().map(|key| (key.path, definition(key))).collect();
-    let mut properties: BTreeMap<&str, Value> = TABLES.into_iter().map(|table| (table, section(table, key))).collect();
-    let mut in_sweep: BTreeMap<&str, Value> = TABLES.into_iter().map(|table| (table, section(table, axis))).collect();
+    let mut properties: BTreeMap<&str, Value> =
+        TABLES.into_iter().map(|table| (table, section(table, key))).collect();
+    let mut in_sweep: BTreeMap<&str, Value> =
+        TABLES.into_iter().map(|table| (table, section(table, axis))).collect();
     let name = |meaning: &str| json!({ "type": "string", "pattern": NAME, "description": meaning });
     in_sweep.insert("name", name("Name of the sweep, unique in the spec."));
     properties.insert("name", name("Name of the run and of its default output directory."));
@@ -64,14 +69,16 @@ pub fn json_schema() -> String {
     let sweep = json!({ "type": "object", "required": ["name"], "additionalProperties": false, "properties": in_sweep });
     properties.insert(
         "sweep",
-        json!({ "type": "array", "items": sweep, "description": "Each sweep overrides keys; arrays in one sweep multiply." }),
+        json!({ "type": "array", "items": sweep, "description": "Each sweep overrides keys; arrays in one \
+             sweep multiply." }),
     );
     let files = json!({ "type": "string", "pattern": DIGEST });
     properties.insert("files", json!({ "type": "object", "additionalProperties": files, "description": "BLAKE3 checksums of measured files; written by the program." }));
     let chosen = json!({ "type": "string", "enum": METHODS });
     properties.insert(
         "auto_methods",
-        json!({ "type": "array", "items": chosen, "description": "Methods that method = \"auto\" chose, case by case; written by the program." }),
+        json!({ "type": "array", "items": chosen, "description": "Methods that method = \"auto\" chose, case \
+             by case; written by the program." }),
     );
     let schema = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -89,7 +96,8 @@ pub fn json_schema() -> String {
 }
 
 fn section(table: &str, of: fn(&Key) -> Value) -> Value {
-    let keys: BTreeMap<&str, Value> = KEYS.iter().filter(|key| key.table == table).map(|key| (key.name, of(key))).collect();
+    let keys: BTreeMap<&str, Value> =
+        KEYS.iter().filter(|key| key.table == table).map(|key| (key.name, of(key))).collect();
     json!({ "type": "object", "additionalProperties": false, "properties": keys })
 }
 
@@ -112,7 +120,9 @@ fn definition(key: &Key) -> Value {
         Kind::Count { low, high, .. } => json!({ "type": "integer", "minimum": low, "maximum": high }),
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Word(choice) => json!({ "type": "string", "enum": words(choice) }),
-        Kind::Words(choice) => json!({ "type": "array", "items": { "type": "string", "enum": words(choice) } }),
+        Kind::Words(choice) => {
+            json!({ "type": "array", "items": { "type": "string", "enum": words(choice) } })
+        }
         Kind::Text(most, _) => {
             json!({ "type": "string", "minLength": i32::from(key.path == "surface.file"), "maxLength": most, "pattern": PLAIN })
         }
@@ -171,6 +181,7 @@ fn realizations() -> Value {
     });
     json!({
         "anyOf": [count(1, DEFAULT), until],
-        "description": "Number of surfaces of each case, or the relative half-width of the 95 % confidence interval that ends sampling.",
+        "description": "Number of surfaces of each case, or the relative half-width of the 95 % confidence \
+             interval that ends sampling.",
     })
 }

@@ -1,7 +1,8 @@
 //! Reading of a spec: from its text to the checked cases.
 //!
-//! The text is TOML. Every key has its row in one table (`keys.rs`): its type, its bounds, and where its value goes. The walker
-//! refuses what no row names, and collects every fault with its place, so that one reading of the answer mends the whole file.
+//! The text is TOML. Every key has its row in one table (`keys.rs`): its type, its bounds, and where its
+//! value goes. The walker refuses what no row names, and collects every fault with its place, so that one
+//! reading of the answer mends the whole file.
 
 mod auto;
 mod elements;
@@ -53,25 +54,51 @@ pub const CONSTANTS: Constants = Constants {
     rows: &[
         Constant::new("cases of a spec", &[MAX_CASES as f64], "", "Maximum, over all sweeps.", ""),
         Constant::new("realizations of a case", &[MAX_REALIZATIONS as f64], "", "Maximum.", ""),
-        Constant::new("tasks of a run", &[MAX_TASKS as f64], "", "Maximum: two for each surface, one for each cycle.", ""),
-        Constant::new("grid points along a side", &[MAX_GRID as f64], "", "Maximum of a generated surface.", ""),
+        Constant::new(
+            "tasks of a run",
+            &[MAX_TASKS as f64],
+            "",
+            "Maximum: two for each surface, one for each cycle.",
+            "",
+        ),
+        Constant::new(
+            "grid points along a side",
+            &[MAX_GRID as f64],
+            "",
+            "Maximum of a generated surface.",
+            "",
+        ),
         Constant::new("size of a spec", &[(MAX_BYTES >> 20) as f64], "MiB", "Maximum.", ""),
-        Constant::new("grid points of boundary elements", &[MAX_ELEMENTS as f64], "", "Maximum along a side.", "elements"),
+        Constant::new(
+            "grid points of boundary elements",
+            &[MAX_ELEMENTS as f64],
+            "",
+            "Maximum along a side.",
+            "elements",
+        ),
         Constant::new(
             "grid points per shortest wavelength",
             &[FEWEST_PER_WAVELENGTH, PER_WAVELENGTH],
             "",
-            "Boundary elements: fewer than the first number are an error. `points = 0` gives at least the second.",
+            "Boundary elements: fewer than the first number are an error. `points = 0` gives at least the \
+             second.",
             "elements",
         ),
         Constant::new(
             "mesh number `sqrt(Δγ dx/E*)/(2ρ)`",
             &[MOST_MESH_NUMBER],
             "",
-            "Boundary elements with a range `ρ`: on a coarser grid contact edges are trapped, which is an error.",
+            "Boundary elements with a range `ρ`: on a coarser grid contact edges are trapped, which is an \
+             error.",
             "elements",
         ),
-        Constant::new("automatic range `ρ`", &[elements::RANGE], "`sqrt(Δγ dx/E*)`", "Boundary elements with `range_m = 0`.", "elements"),
+        Constant::new(
+            "automatic range `ρ`",
+            &[elements::RANGE],
+            "`sqrt(Δγ dx/E*)`",
+            "Boundary elements with `range_m = 0`.",
+            "elements",
+        ),
         Constant::new(
             "work of adhesion `Δγ/(E* dx)`",
             &[elements::LEAST_WORK],
@@ -79,12 +106,19 @@ pub const CONSTANTS: Constants = Constants {
             "Boundary elements: a smaller one is an error.",
             "elements",
         ),
-        Constant::new("gap at which the attraction ends", &[elements::END], "`ρ`", "Boundary elements with a range `ρ`.", "elements"),
+        Constant::new(
+            "gap at which the attraction ends",
+            &[elements::END],
+            "`ρ`",
+            "Boundary elements with a range `ρ`.",
+            "elements",
+        ),
         Constant::new(
             "steps over that gap",
             &[MANY_RANGE_STEPS, elements::MOST_RANGE_STEPS],
             "",
-            "Boundary elements with a range: `plan` announces more than the first number (`many_steps`), more than the second are an error.",
+            "Boundary elements with a range: `plan` announces more than the first number (`many_steps`), \
+             more than the second are an error.",
             "elements",
         ),
     ],
@@ -122,7 +156,8 @@ pub struct Spec {
     pub base: Values,
     /// The sweeps as written, each value checked.
     pub sweeps: Vec<Sweep>,
-    /// Methods chosen for the points with `method = "auto"`, in their order, if they differ; `auto` where a scan decides and has not been read.
+    /// Methods chosen for the points with `method = "auto"`, in their order, if they differ; `auto` where a
+    /// scan decides and has not been read.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub auto_methods: Vec<Method>,
     /// Places in [`Self::cases`] of these points, until all are chosen.
@@ -138,7 +173,8 @@ pub struct Spec {
 /// One point of the campaign.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Case {
-    /// Names of all sweeps in which this case occurs, in their order; `base` alone when the spec has no sweep.
+    /// Names of all sweeps in which this case occurs, in their order; `base` alone when the spec has no
+    /// sweep.
     pub sweeps: Vec<String>,
     /// Parameters of the case.
     pub params: CaseParams,
@@ -200,7 +236,12 @@ impl Spec {
     }
 
     /// Reads a spec from its text, with the choices of `method = "auto"`, if they are known.
-    fn parse_chosen(text: &str, file: &str, settings: &[String], chosen: Vec<Method>) -> Result<Self, SpecErrors> {
+    fn parse_chosen(
+        text: &str,
+        file: &str,
+        settings: &[String],
+        chosen: Vec<Method>,
+    ) -> Result<Self, SpecErrors> {
         let mut faults = fault::Faults::new(text, file);
         let mut draft = walk::document(text, &mut faults);
         if let Some(draft) = &mut draft {
@@ -213,11 +254,13 @@ impl Spec {
         faults.finish(spec).map_err(|errors| errors.with(settings))
     }
 
-    /// Reads a spec from a file, and looks at the files of measured surfaces that it names. A relative name is looked for in the working directory, then in the
-    /// folder of the spec; a name of which the spec has the checksum, the other way round. The returned spec has the name by which the file was found.
+    /// Reads a spec from a file, and looks at the files of measured surfaces that it names. A relative name
+    /// is looked for in the working directory, then in the folder of the spec; a name of which the spec has
+    /// the checksum, the other way round. The returned spec has the name by which the file was found.
     ///
     /// # Errors
-    /// Why the file cannot be read, or every fault of its text, or which of the files that it names cannot be read.
+    /// Why the file cannot be read, or every fault of its text, or which of the files that it names cannot be
+    /// read.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SpecErrors> {
         Self::read_with(path, &[])
     }
@@ -227,42 +270,57 @@ impl Spec {
     /// # Errors
     /// As these two.
     pub fn read_with(path: impl AsRef<Path>, settings: &[String]) -> Result<Self, SpecErrors> {
-        Self::read_choosing(path, settings, &|_| Err(("it is not read here".to_owned(), "write the method".to_owned())))
+        Self::read_choosing(path, settings, &|_| {
+            Err(("it is not read here".to_owned(), "write the method".to_owned()))
+        })
     }
 
-    /// Reads a spec from a file as [`Self::read_with`]. The chooser reads the scan of a case with `method = "auto"`.
+    /// Reads a spec from a file as [`Self::read_with`]. The chooser reads the scan of a case with `method =
+    /// "auto"`.
     ///
     /// # Errors
     /// As [`Self::read_with`], and errors of the chooser.
-    pub fn read_choosing(path: impl AsRef<Path>, settings: &[String], chooser: Chooser<'_>) -> Result<Self, SpecErrors> {
+    pub fn read_choosing(
+        path: impl AsRef<Path>,
+        settings: &[String],
+        chooser: Chooser<'_>,
+    ) -> Result<Self, SpecErrors> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        // Windows answers "access denied" for a folder; the question is cheap and the answer is the same everywhere.
+        // Windows answers "access denied" for a folder; the question is cheap and the answer is the same
+        // everywhere.
         if path.is_dir() {
             return Err(SpecErrors::unreadable(&file, "it is a directory, not a TOML file"));
         }
         let mut bytes = Vec::new();
         // One byte above the maximum shows that a file is too long, also where a pipe has no length.
-        let read = std::fs::File::open(path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut bytes));
+        let read =
+            std::fs::File::open(path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut bytes));
         match read {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(SpecErrors::unreadable(&file, "no such file"));
             }
             Err(error) => return Err(SpecErrors::unreadable(&file, &error.to_string())),
             Ok(length) if length as u64 > MAX_BYTES => {
-                return Err(SpecErrors::unreadable(&file, &format!("it is longer than {} MiB", MAX_BYTES >> 20)));
+                return Err(SpecErrors::unreadable(
+                    &file,
+                    &format!("it is longer than {} MiB", MAX_BYTES >> 20),
+                ));
             }
             Ok(_) => {}
         }
         match std::str::from_utf8(&bytes) {
             Ok(text) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
-                let found = |spec: Self| files::digested(spec, text, &file, folder).map_err(|errors| errors.with(settings));
+                let found = |spec: Self| {
+                    files::digested(spec, text, &file, folder).map_err(|errors| errors.with(settings))
+                };
                 let spec = found(Self::parse_with(text, &file, settings)?)?;
                 if !spec.auto_methods.contains(&Method::Auto) {
                     return Ok(spec);
                 }
-                let methods = auto::chosen(&spec, text, &file, chooser).map_err(|errors| errors.with(settings))?;
+                let methods =
+                    auto::chosen(&spec, text, &file, chooser).map_err(|errors| errors.with(settings))?;
                 found(Self::parse_chosen(text, &file, settings, methods)?)
             }
             Err(error) => Err(SpecErrors::not_utf8(&bytes, error.valid_up_to(), &file)),

@@ -13,7 +13,8 @@ pub(super) fn nearest<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str
     let mut best: Option<(usize, &str)> = None;
     for word in known {
         let distance = osa_distance(&unknown, &word.to_lowercase());
-        // `length` for `length_m`, `points` for `points_per_shortest_wavelength`: half a key is a good hint, but a weaker one.
+        // `length` for `length_m`, `points` for `points_per_shortest_wavelength`: half a key is a good hint,
+        // but a weaker one.
         let begun = unknown.len() >= 3 && word.starts_with(&unknown);
         let rank = if distance <= allowed { distance } else { allowed + 1 };
         if (distance <= allowed || begun) && best.is_none_or(|(least, _)| rank < least) {

@@ -7,7 +7,12 @@ use super::keys::{Key, Limits};
 use super::written::{Written, array, wrong_type};
 
 /// A real number within its bounds.
-pub(super) fn number(path: &str, limits: &Limits, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<f64> {
+pub(super) fn number(
+    path: &str,
+    limits: &Limits,
+    value: &Written<'_>,
+    faults: &mut Faults<'_>,
+) -> Option<f64> {
     let span = value.span();
     let found = match value.get_ref() {
         DeValue::Float(float) => real(float),
@@ -50,11 +55,18 @@ fn allowed(limits: &Limits) -> String {
 const APART: f64 = 1e-4;
 
 /// The array of numbers of a key: ascending, each once.
-pub(super) fn numbers(key: &Key, limits: &Limits, most: usize, value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Vec<f64>> {
+pub(super) fn numbers(
+    key: &Key,
+    limits: &Limits,
+    most: usize,
+    value: &Written<'_>,
+    faults: &mut Faults<'_>,
+) -> Option<Vec<f64>> {
     let path = key.path;
     let elements = array(path, "numbers", value, faults)?;
     if elements.is_empty() || elements.len() > most {
-        let message = format!("`{path}` cannot have {} values: it must have from 1 to {most}", elements.len());
+        let message =
+            format!("`{path}` cannot have {} values: it must have from 1 to {most}", elements.len());
         faults.add(&value.span(), message, None);
         return None;
     }
@@ -66,14 +78,24 @@ pub(super) fn numbers(key: &Key, limits: &Limits, most: usize, value: &Written<'
                 let message = format!("`{path}` has the value {} twice", short(found));
                 faults.add(&element.span(), message, "list each load reversal once".to_owned());
             }
-            let other = seen.iter().find(|other| found != **other && (found - **other).abs() < APART * found.max(**other));
+            let other = seen
+                .iter()
+                .find(|other| found != **other && (found - **other).abs() < APART * found.max(**other));
             if let Some(other) = other {
-                let message =
-                    format!("`{path}` has the values {} and {}, which differ by less than 1e-4 of them", short(found), short(*other));
-                faults.add(&element.span(), message, "a load reversal is reached to 1e-5: list one of them".to_owned());
+                let message = format!(
+                    "`{path}` has the values {} and {}, which differ by less than 1e-4 of them",
+                    short(found),
+                    short(*other)
+                );
+                faults.add(
+                    &element.span(),
+                    message,
+                    "a load reversal is reached to 1e-5: list one of them".to_owned(),
+                );
             }
             if found < f64::MIN_POSITIVE {
-                let message = format!("`{path}` cannot be {}: it is below the smallest normal number", short(found));
+                let message =
+                    format!("`{path}` cannot be {}: it is below the smallest normal number", short(found));
                 faults.add(&element.span(), message, limits.note.to_owned());
             }
             seen.push(found);
@@ -98,7 +120,8 @@ pub(super) fn integer(path: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
     };
     let whole = whole(found);
     if whole.is_none() {
-        let message = format!("`{path}` cannot be {}: a TOML integer has at most 64 bits", faults.written(&span));
+        let message =
+            format!("`{path}` cannot be {}: a TOML integer has at most 64 bits", faults.written(&span));
         faults.add(&span, message, None);
     }
     whole
@@ -107,7 +130,9 @@ pub(super) fn integer(path: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
 /// Help for a number in quotes.
 fn unquoted(value: &DeValue<'_>) -> Option<String> {
     match value {
-        DeValue::String(text) if text.trim().parse::<f64>().is_ok() => Some("write it without quotes".to_owned()),
+        DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
+            Some("write it without quotes".to_owned())
+        }
         _ => None,
     }
 }

@@ -74,7 +74,11 @@ impl fmt::Display for Realizations {
         match self {
             Self::Exactly(count) => write!(f, "{count}"),
             Self::Until(Until { until_relative_ci, of, min, max }) => {
-                write!(f, "{{ until_relative_ci = {until_relative_ci:?}, of = \"{}\", min = {min}, max = {max} }}", of.word())
+                write!(
+                    f,
+                    "{{ until_relative_ci = {until_relative_ci:?}, of = \"{}\", min = {min}, max = {max} }}",
+                    of.word()
+                )
             }
         }
     }
@@ -100,7 +104,8 @@ pub(super) const PRECISION: Limits = Limits {
     unit: "",
     unit_name: "",
     slip: None,
-    note: "half-width of the 95 % confidence interval over the mean; 0.05 takes about 100 surfaces at a standard deviation of 25 %",
+    note: "half-width of the 95 % confidence interval over the mean; 0.05 takes about 100 surfaces at a \
+         standard deviation of 25 %",
 };
 
 /// A number of realizations, or a table that says until when.
@@ -122,7 +127,11 @@ fn count(path: &str, least: u32, value: &Written<'_>, faults: &mut Faults<'_>) -
     if count.is_none() {
         let message = format!("`{path}` cannot be {found}: it must be from {least} to {MAX_REALIZATIONS}");
         // One has no spread.
-        faults.add(&value.span(), message, (least > 1).then(|| "a standard deviation requires at least two realizations".to_owned()));
+        faults.add(
+            &value.span(),
+            message,
+            (least > 1).then(|| "a standard deviation requires at least two realizations".to_owned()),
+        );
     }
     count
 }
@@ -134,7 +143,9 @@ fn until(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Until> {
     let mut limits = value.span();
     for (name, span, written) in entries(table) {
         match name {
-            "until_relative_ci" => precision = number("realizations.until_relative_ci", &PRECISION, written, faults),
+            "until_relative_ci" => {
+                precision = number("realizations.until_relative_ci", &PRECISION, written, faults);
+            }
             "of" => {
                 let words: Vec<&'static str> = Goal::WORDS.iter().map(|(word, _)| *word).collect();
                 of = word("realizations.of", &words, written, faults).and_then(Goal::from_word).unwrap_or(of);
@@ -146,7 +157,8 @@ fn until(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Until> {
             }
             unknown => {
                 let listed = format!("keys of `realizations`: {}", TAKES.join(", "));
-                let help = nearest(unknown, TAKES).map_or_else(|| listed.clone(), |near| format!("did you mean `{near}`? {listed}"));
+                let help = nearest(unknown, TAKES)
+                    .map_or_else(|| listed.clone(), |near| format!("did you mean `{near}`? {listed}"));
                 faults.add(&span, format!("unknown key `{}` in `realizations`", shown(unknown)), help);
             }
         }
@@ -156,7 +168,11 @@ fn until(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Until> {
         faults.add(&value.span(), "`realizations` has no `until_relative_ci`".to_owned(), help);
     }
     if faults.count() == before && min > max {
-        faults.add(&limits, format!("`realizations.max` cannot be {max}: it must be at least `min`, which is {min}"), None);
+        faults.add(
+            &limits,
+            format!("`realizations.max` cannot be {max}: it must be at least `min`, which is {min}"),
+            None,
+        );
     }
     (faults.count() == before).then_some(Until { until_relative_ci: precision?, of, min, max })
 }

@@ -116,13 +116,23 @@ fn top() -> String {
 
 /// A table of the spec: an overview, then the meaning of each key.
 fn section(table: &str) -> String {
-    let mut section =
-        format!("\n## `[{table}]`\n\n| key | symbol | type | unit | range | default | stage |\n|---|---|---|---|---|---|---|\n");
+    let mut section = format!(
+        "\n## `[{table}]`\n\n| key | symbol | type | unit | range | default | stage \
+         |\n|---|---|---|---|---|---|---|\n"
+    );
     let keys = || KEYS.iter().filter(|key| key.table == table);
     for key in keys() {
         let (kind, unit, range) = described(&key.kind);
         let symbol = if key.symbol.is_empty() { String::new() } else { format!("`{}`", key.symbol) };
-        let cells = [format!("`{}`", key.path), symbol, kind.to_owned(), unit.to_owned(), range, default(key), key.stage().to_owned()];
+        let cells = [
+            format!("`{}`", key.path),
+            symbol,
+            kind.to_owned(),
+            unit.to_owned(),
+            range,
+            default(key),
+            key.stage().to_owned(),
+        ];
         section += &format!("| {} |\n", cells.join(" | "));
     }
     section.push('\n');

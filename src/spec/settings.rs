@@ -30,7 +30,11 @@ pub(super) fn apply(settings: &[String], draft: &mut Draft) -> Result<(), SpecEr
 fn document(setting: &str) -> Result<String, SpecErrors> {
     let refused = |problem: &str| {
         let mut faults = Faults::new(setting, OPTION);
-        faults.add(&(0..setting.len()), problem.to_owned(), "write --set KEY=VALUE, e.g. --set surface.hurst=0.7".to_owned());
+        faults.add(
+            &(0..setting.len()),
+            problem.to_owned(),
+            "write --set KEY=VALUE, e.g. --set surface.hurst=0.7".to_owned(),
+        );
         faults.finish::<String>(None)
     };
     let Some((key, value)) = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim())) else {
@@ -39,7 +43,10 @@ fn document(setting: &str) -> Result<String, SpecErrors> {
     if setting.chars().any(char::is_control) {
         return refused("a setting has a control character");
     }
-    let is_key = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-' || c == '.');
+    let is_key = |text: &str| {
+        !text.is_empty()
+            && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-' || c == '.')
+    };
     if !is_key(key) {
         return refused("a setting has no key");
     }
@@ -52,19 +59,28 @@ fn document(setting: &str) -> Result<String, SpecErrors> {
 fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     let (root, broken) = DeTable::parse_recoverable(text);
     if let Some(error) = broken.first() {
-        faults.add(&error.span().unwrap_or(0..text.len()), format!("the setting is not valid TOML: {}", error.message()), None);
+        faults.add(
+            &error.span().unwrap_or(0..text.len()),
+            format!("the setting is not valid TOML: {}", error.message()),
+            None,
+        );
         return;
     }
     let path = text.split(" = ").next().unwrap_or_default();
     let place = path.split_once('.').and_then(|(table, name)| find(table, name));
     for (key, span, written) in entries(root.get_ref()) {
         if matches!(key, "sweep" | "files" | "auto_methods") || TABLES.contains(&key) && !path.contains('.') {
-            let help = "it takes name, seed, realizations, and keys of tables such as surface.hurst".to_owned();
+            let help =
+                "it takes name, seed, realizations, and keys of tables such as surface.hurst".to_owned();
             faults.add(&span, format!("{OPTION} cannot set `{key}`"), help);
             return;
         }
         if let Some(table) = TABLES.iter().find(|table| !path.contains('.') && find(table, key).is_some()) {
-            faults.add(&span, format!("{OPTION} needs the table of `{key}`"), format!("write {OPTION} {table}.{key}=VALUE"));
+            faults.add(
+                &span,
+                format!("{OPTION} needs the table of `{key}`"),
+                format!("write {OPTION} {table}.{key}=VALUE"),
+            );
             return;
         }
         enter((key, span, written), draft, faults);
@@ -82,7 +98,9 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     if path == "surface.file" {
         draft.files.clear();
     }
-    let has_axis = |sweep: &Option<SweepDraft>| sweep.as_ref().is_some_and(|sweep| sweep.axes.iter().any(|axis| axis.key == place));
+    let has_axis = |sweep: &Option<SweepDraft>| {
+        sweep.as_ref().is_some_and(|sweep| sweep.axes.iter().any(|axis| axis.key == place))
+    };
     if !draft.sweeps.is_empty() && draft.sweeps.iter().all(has_axis) {
         let at: Range<usize> = 0..path.len();
         faults.add(

@@ -30,7 +30,12 @@ pub(super) struct AxisDraft {
 const IN_SWEEP: [&str; 6] = ["name", "surface", "material", "model", "boundary_elements", "cycle"];
 
 /// Reads the sweeps.
-pub(super) fn sweeps(written: &Spanned<DeValue<'_>>, span: &Range<usize>, read: &mut Vec<Option<SweepDraft>>, faults: &mut Faults<'_>) {
+pub(super) fn sweeps(
+    written: &Spanned<DeValue<'_>>,
+    span: &Range<usize>,
+    read: &mut Vec<Option<SweepDraft>>,
+    faults: &mut Faults<'_>,
+) {
     let DeValue::Array(tables) = written.get_ref() else {
         let help = "write [[sweep]], in double brackets".to_owned();
         faults.add(span, "`sweep` must be an array of tables".to_owned(), help);
@@ -40,7 +45,14 @@ pub(super) fn sweeps(written: &Spanned<DeValue<'_>>, span: &Range<usize>, read: 
     for table in tables.iter() {
         let DeValue::Table(found) = table.get_ref() else {
             let help = "write [[sweep]], in double brackets".to_owned();
-            super::written::wrong_type("sweep", "an array of tables", table.get_ref(), &table.span(), help, faults);
+            super::written::wrong_type(
+                "sweep",
+                "an array of tables",
+                table.get_ref(),
+                &table.span(),
+                help,
+                faults,
+            );
             continue;
         };
         read.push(sweep(found, table.span(), &mut names, faults));
@@ -48,13 +60,22 @@ pub(super) fn sweeps(written: &Spanned<DeValue<'_>>, span: &Range<usize>, read: 
 }
 
 /// Reads one sweep.
-fn sweep(found: &DeTable<'_>, at: Range<usize>, known: &mut HashSet<String>, faults: &mut Faults<'_>) -> Option<SweepDraft> {
+fn sweep(
+    found: &DeTable<'_>,
+    at: Range<usize>,
+    known: &mut HashSet<String>,
+    faults: &mut Faults<'_>,
+) -> Option<SweepDraft> {
     let before = faults.count();
     let mut name = None;
     let mut overrides = Vec::new();
     let entries = entries(found);
     if !entries.iter().any(|(key, ..)| *key == "name") {
-        faults.add(&at, "the sweep has no `name`".to_owned(), "add a line such as name = \"loads\"".to_owned());
+        faults.add(
+            &at,
+            "the sweep has no `name`".to_owned(),
+            "add a line such as name = \"loads\"".to_owned(),
+        );
     }
     for (key, span, written) in entries {
         match key {
@@ -82,7 +103,8 @@ fn sweep(found: &DeTable<'_>, at: Range<usize>, known: &mut HashSet<String>, fau
     }
     // Keys of different tables may alternate; the grid follows the order written.
     overrides.sort_by_key(|(_, span, _)| span.start);
-    let axes: Vec<_> = overrides.into_iter().filter_map(|(place, _, written)| axis(place, written, faults)).collect();
+    let axes: Vec<_> =
+        overrides.into_iter().filter_map(|(place, _, written)| axis(place, written, faults)).collect();
     let name = name.filter(|_| faults.count() == before)?;
     Some(SweepDraft { name, span: at, axes })
 }
@@ -94,7 +116,9 @@ fn axis(place: usize, written: &Spanned<DeValue<'_>>, faults: &mut Faults<'_>) -
         value::read(key, value, faults).map(|read| Spanned::new(value.span(), read))
     };
     let values = match written.get_ref() {
-        DeValue::Array(many) if !key.kind.is_list() || many.first().is_some_and(|first| first.get_ref().is_array()) => {
+        DeValue::Array(many)
+            if !key.kind.is_list() || many.first().is_some_and(|first| first.get_ref().is_array()) =>
+        {
             if many.is_empty() {
                 let message = format!("the sweep of `{}` has no values", key.path);
                 faults.add(&written.span(), message, "give at least one value, or remove the key".to_owned());

@@ -39,7 +39,8 @@ pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> O
         Kind::Words(choice) => {
             let words = words(choice);
             let elements = array(key.path, "strings", value, faults)?;
-            let read: Vec<_> = elements.iter().map(|element| word(key.path, &words, element, faults)).collect();
+            let read: Vec<_> =
+                elements.iter().map(|element| word(key.path, &words, element, faults)).collect();
             let said: Vec<_> = read.into_iter().collect::<Option<_>>()?;
             // In the order of the choice, so that two orders of writing are one case.
             Some(Value::Words(words.into_iter().filter(|word| said.contains(word)).collect()))
@@ -55,7 +56,11 @@ fn text(path: &str, most: usize, note: &str, value: &Written<'_>, faults: &mut F
         return None;
     };
     if found.is_empty() && path == "surface.file" {
-        faults.add(&span, format!("`{path}` is empty: it is {note}"), "remove the key for a generated surface".to_owned());
+        faults.add(
+            &span,
+            format!("`{path}` is empty: it is {note}"),
+            "remove the key for a generated surface".to_owned(),
+        );
         return None;
     }
     if found.len() > most || found.chars().any(char::is_control) {
@@ -73,18 +78,35 @@ fn length(path: &str, note: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
         return Some(found);
     }
     let span = value.span();
-    faults.add(&span, format!("`{path}` cannot be {}: not a unit of length", faults.written(&span)), format!("use one of {LENGTHS}"));
+    faults.add(
+        &span,
+        format!("`{path}` cannot be {}: not a unit of length", faults.written(&span)),
+        format!("use one of {LENGTHS}"),
+    );
     None
 }
 
 /// Values that earlier versions had: key, value, help.
-const REMOVED: [(&str, &str, &str); 1] =
-    [("model.interaction", "reciprocal", "use \"point\", which has an exact potential too, or \"spots\", the default")];
+const REMOVED: [(&str, &str, &str); 1] = [(
+    "model.interaction",
+    "reciprocal",
+    "use \"point\", which has an exact potential too, or \"spots\", the default",
+)];
 
 /// One of the words of a key.
-pub(super) fn word(path: &str, words: &[&'static str], value: &Written<'_>, faults: &mut Faults<'_>) -> Option<&'static str> {
+pub(super) fn word(
+    path: &str,
+    words: &[&'static str],
+    value: &Written<'_>,
+    faults: &mut Faults<'_>,
+) -> Option<&'static str> {
     let span = value.span();
-    let listed = || format!("use one of {}", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "));
+    let listed = || {
+        format!(
+            "use one of {}",
+            words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
+        )
+    };
     let DeValue::String(found) = value.get_ref() else {
         wrong_type(path, "a string", value.get_ref(), &span, listed(), faults);
         return None;

@@ -3,8 +3,8 @@
 use super::Value;
 use super::keys::{KEYS, TABLES};
 use crate::model::{
-    AsperityOptions, Attraction, AttractionKind, CaseParams, ElementOptions, GeneratedSurface, LoadingPath, Material, MeasuredSurface,
-    Method, MethodOptions, Nucleation, Opening, Slip, SurfaceSource,
+    AsperityOptions, Attraction, AttractionKind, CaseParams, ElementOptions, GeneratedSurface, LoadingPath,
+    Material, MeasuredSurface, Method, MethodOptions, Nucleation, Opening, Slip, SurfaceSource,
 };
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -58,17 +58,22 @@ impl Default for Values {
 }
 
 impl Values {
-    /// The case of these values: what its surface, its method and its attraction do not read is left out, so that
-    /// cases which differ in nothing else are one case. `method = "auto"` has the options of the asperity model.
+    /// The case of these values: what its surface, its method and its attraction do not read is left out, so
+    /// that cases which differ in nothing else are one case. `method = "auto"` has the options of the
+    /// asperity model.
     #[must_use]
     pub fn case(&self) -> CaseParams {
         let surface = if self.measured.file.is_empty() {
             SurfaceSource::Generated(self.generated.clone())
         } else {
             let points_per_shortest_wavelength = self.generated.points_per_shortest_wavelength;
-            SurfaceSource::Measured(Box::new(MeasuredSurface { points_per_shortest_wavelength, ..self.measured.clone() }))
+            SurfaceSource::Measured(Box::new(MeasuredSurface {
+                points_per_shortest_wavelength,
+                ..self.measured.clone()
+            }))
         };
-        let (mut as_printed, is_by_elements) = (self.as_printed.clone(), self.method == Method::BoundaryElements);
+        let (mut as_printed, is_by_elements) =
+            (self.as_printed.clone(), self.method == Method::BoundaryElements);
         let method = if is_by_elements {
             as_printed.retain(|slip| !slip.in_contact());
             MethodOptions::Elements(ElementOptions { attraction: self.attraction(), ..self.elements.clone() })
@@ -80,7 +85,9 @@ impl Values {
 
     fn attraction(&self) -> Attraction {
         match self.attraction {
-            AttractionKind::Bonded => Attraction::Bonded { nucleation: self.nucleation, opening: self.opening },
+            AttractionKind::Bonded => {
+                Attraction::Bonded { nucleation: self.nucleation, opening: self.opening }
+            }
             AttractionKind::Range => Attraction::Range { range_m: self.range_m },
         }
     }
@@ -109,7 +116,9 @@ impl From<&CaseParams> for Values {
         }
         values.attraction = values.elements.attraction.kind();
         match values.elements.attraction {
-            Attraction::Bonded { nucleation, opening } => (values.nucleation, values.opening) = (nucleation, opening),
+            Attraction::Bonded { nucleation, opening } => {
+                (values.nucleation, values.opening) = (nucleation, opening);
+            }
             Attraction::Range { range_m } => values.range_m = range_m,
         }
         values
@@ -120,7 +129,8 @@ impl Serialize for Values {
     /// The tables of a spec with every key.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let keys = |table: &'static str| KEYS.iter().filter(move |key| key.table == table);
-        let values = |table| keys(table).map(|key| (key.name, (key.get)(self))).collect::<BTreeMap<&str, Value>>();
+        let values =
+            |table| keys(table).map(|key| (key.name, (key.get)(self))).collect::<BTreeMap<&str, Value>>();
         serializer.collect_map(TABLES.iter().map(|table| (*table, values(table))))
     }
 }

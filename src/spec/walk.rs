@@ -102,7 +102,11 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
     };
     let entries = entries(root.get_ref());
     if !entries.iter().any(|(key, ..)| *key == "name") {
-        let what = if entries.is_empty() { "the spec is empty: it needs a `name`" } else { "the spec has no `name`" };
+        let what = if entries.is_empty() {
+            "the spec is empty: it needs a `name`"
+        } else {
+            "the spec has no `name`"
+        };
         faults.add(&(0..0), what.to_owned(), "add a first line such as name = \"first\"".to_owned());
     }
     for entry in entries {
@@ -129,14 +133,21 @@ pub(super) fn enter((key, span, written): Entry<'_, '_>, draft: &mut Draft, faul
         "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),
         table if TABLES.contains(&table) => base(table, written, &span, draft, faults),
         unknown => faults.add_with(&span, || {
-            let help = lost(unknown, &TOP, |table| format!("`{unknown}` belongs in [{table}]"), "keys of a spec");
+            let help =
+                lost(unknown, &TOP, |table| format!("`{unknown}` belongs in [{table}]"), "keys of a spec");
             (format!("unknown key `{}` at the top of the spec", shown(unknown)), Some(help))
         }),
     }
 }
 
 /// Reads a table of the base.
-fn base(table: &str, written: &Spanned<DeValue<'_>>, span: &Range<usize>, draft: &mut Draft, faults: &mut Faults<'_>) {
+fn base(
+    table: &str,
+    written: &Spanned<DeValue<'_>>,
+    span: &Range<usize>,
+    draft: &mut Draft,
+    faults: &mut Faults<'_>,
+) {
     for (place, _, written) in keys(table, written, span, faults) {
         let key = &KEYS[place];
         let read = if !key.kind.is_list() && written.get_ref().is_array() {

@@ -28,7 +28,9 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     }
     for table in TABLES {
         writeln!(text, "\n[{table}]")?;
-        for key in KEYS.iter().filter(|key| key.table == table && is_read(key, &spec.base) && !follows(key, spec)) {
+        for key in
+            KEYS.iter().filter(|key| key.table == table && is_read(key, &spec.base) && !follows(key, spec))
+        {
             writeln!(text, "{} = {}", key.name, value(&(key.get)(&spec.base)))?;
         }
     }
@@ -56,11 +58,17 @@ fn is_read(key: &Key, base: &Values) -> bool {
     key.table != "surface" || !others.contains(&key.name) || (key.get)(base) != (key.get)(&Values::default())
 }
 
-/// True if a value was left to its default, which differs between the cases of a sweep that does not set it: written out, it would hold for all of them.
+/// True if a value was left to its default, which differs between the cases of a sweep that does not set it:
+/// written out, it would hold for all of them.
 fn follows(key: &Key, spec: &Spec) -> bool {
-    let set = |name: &str| spec.sweeps.iter().any(|sweep| sweep.name == name && sweep.axes.iter().any(|axis| axis.key == key.path));
+    let set = |name: &str| {
+        spec.sweeps
+            .iter()
+            .any(|sweep| sweep.name == name && sweep.axes.iter().any(|axis| axis.key == key.path))
+    };
     let differs = |case: &Case| (key.get)(&Values::from(&case.params)) != (key.get)(&spec.base);
-    key.path == "surface.detrend" && spec.cases.iter().any(|case| differs(case) && !case.sweeps.iter().all(|name| set(name)))
+    key.path == "surface.detrend"
+        && spec.cases.iter().any(|case| differs(case) && !case.sweeps.iter().all(|name| set(name)))
 }
 
 /// A value as TOML. Rust's shortest form of a float is also TOML's, and reads back to the same bits.

@@ -11,7 +11,12 @@ use super::fault::Faults;
 pub(super) type Written<'t> = Spanned<DeValue<'t>>;
 
 /// The elements of an array.
-pub(super) fn array<'v, 't>(path: &str, of: &str, value: &'v Written<'t>, faults: &mut Faults<'_>) -> Option<&'v DeArray<'t>> {
+pub(super) fn array<'v, 't>(
+    path: &str,
+    of: &str,
+    value: &'v Written<'t>,
+    faults: &mut Faults<'_>,
+) -> Option<&'v DeArray<'t>> {
     match value.get_ref() {
         DeValue::Array(elements) => Some(elements),
         other => {

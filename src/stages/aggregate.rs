@@ -27,16 +27,27 @@ pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, St
         return Err(error);
     }
     let key = campaign.statistics_key(&standings);
-    let single = Single { unit: Unit { stage: Stage::Aggregate, id: STATISTICS, key: &key }, name: "statistics", clock };
-    let compute = || Ok((Outcome::of(write(campaign, &standings, &key)?), campaign.statistics_preimages(&standings)));
+    let single = Single {
+        unit: Unit { stage: Stage::Aggregate, id: STATISTICS, key: &key },
+        name: "statistics",
+        clock,
+    };
+    let compute =
+        || Ok((Outcome::of(write(campaign, &standings, &key)?), campaign.statistics_preimages(&standings)));
     run_single(single, (context, task.check), || None, compute)
 }
 
 /// The error of cycles that are neither done nor failed.
 fn unfinished(campaign: &Campaign, standings: &[Standing]) -> Option<StageError> {
-    let state = |standing: &Standing| if matches!(standing, Standing::Failed(_)) { Standing::Done } else { standing.clone() };
-    let inputs: Vec<(String, Standing)> =
-        campaign.cycles.iter().zip(standings).map(|(unit, standing)| (unit.id.clone(), state(standing))).collect();
+    let state = |standing: &Standing| {
+        if matches!(standing, Standing::Failed(_)) { Standing::Done } else { standing.clone() }
+    };
+    let inputs: Vec<(String, Standing)> = campaign
+        .cycles
+        .iter()
+        .zip(standings)
+        .map(|(unit, standing)| (unit.id.clone(), state(standing)))
+        .collect();
     incomplete(campaign, Stage::Aggregate, &inputs)
 }
 
@@ -49,14 +60,21 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     let curves = stats::curves(&cases, &cycles)?;
     let avalanches = stats::avalanches(&cases, &cycles)?;
     let planned = stats::planned(&cases, &planned_cycles(campaign, standings))?;
-    let write = |frame: &Frame| Ok(parquet::write_table(&campaign.statistics_path(frame.table().name), frame, &[("key", key.to_owned())])?);
+    let write = |frame: &Frame| {
+        Ok(parquet::write_table(
+            &campaign.statistics_path(frame.table().name),
+            frame,
+            &[("key", key.to_owned())],
+        )?)
+    };
     let tables = [realizations, curves, avalanches, planned, methods, averaged];
     let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
     let finished: Vec<bool> = standings.iter().map(|standing| *standing == Standing::Done).collect();
     for (place, text) in datapackage::files(campaign, &finished) {
         let path = campaign.dir.join(place);
         if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(|source| StageError::Folder { path: folder.to_owned(), source })?;
+            std::fs::create_dir_all(folder)
+                .map_err(|source| StageError::Folder { path: folder.to_owned(), source })?;
         }
         files.push(commit::commit_bytes("describe the tables in", &path, text.as_bytes())?);
     }
@@ -64,9 +82,16 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
 }
 
 /// Inputs of the aggregation: all cases, and the finished cycles.
-fn inputs(campaign: &Campaign, standings: &[Standing]) -> Result<(Vec<CaseInput>, Vec<CycleInput>), StageError> {
-    let mut cases: Vec<CaseInput> =
-        campaign.cases.iter().enumerate().map(|(k, unit)| case_input(campaign, k, unit, standings)).collect::<Result<_, _>>()?;
+fn inputs(
+    campaign: &Campaign,
+    standings: &[Standing],
+) -> Result<(Vec<CaseInput>, Vec<CycleInput>), StageError> {
+    let mut cases: Vec<CaseInput> = campaign
+        .cases
+        .iter()
+        .enumerate()
+        .map(|(k, unit)| case_input(campaign, k, unit, standings))
+        .collect::<Result<_, _>>()?;
     let cycles: Vec<CycleInput> = campaign
         .cycles
         .par_iter()
@@ -86,7 +111,8 @@ fn inputs(campaign: &Campaign, standings: &[Standing]) -> Result<(Vec<CaseInput>
     }
     // Without failed cycles the table of realizations has all surfaces.
     let places = cases.iter().enumerate().filter(|(_, case)| case.failed_count > 0);
-    let with_failed: HashMap<String, usize> = places.map(|(place, case)| (case.case_id.clone(), place)).collect();
+    let with_failed: HashMap<String, usize> =
+        places.map(|(place, case)| (case.case_id.clone(), place)).collect();
     for cycle in &cycles {
         if let Some(place) = with_failed.get(&cycle.case_id) {
             cases[*place].surfaces.push(cycle.surface.clone());
@@ -100,7 +126,8 @@ fn side_by_side(campaign: &Campaign) -> Vec<[String; 2]> {
     let same = |a: &CaseParams, b: &CaseParams| a.surface == b.surface && a.material == b.material;
     let pairs = |one: &CaseUnit| {
         let is_later = |other: &&CaseUnit| other.case.params.method.kind() > one.case.params.method.kind();
-        let others = campaign.cases.iter().filter(is_later).filter(|other| same(&one.case.params, &other.case.params));
+        let others =
+            campaign.cases.iter().filter(is_later).filter(|other| same(&one.case.params, &other.case.params));
         others.map(|other| [one.id.clone(), other.id.clone()]).collect::<Vec<_>>()
     };
     campaign.cases.iter().flat_map(pairs).collect()
@@ -126,10 +153,19 @@ fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
     campaign.cycles.iter().zip(standings).map(row).collect()
 }
 
-fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[Standing]) -> Result<CaseInput, StageError> {
+fn case_input(
+    campaign: &Campaign,
+    number: usize,
+    unit: &CaseUnit,
+    standings: &[Standing],
+) -> Result<CaseInput, StageError> {
     let params = &unit.case.params;
     let surface = &params.surface;
-    let of_case = campaign.cycles.iter().find(|cycle| cycle.case == number).map(|cycle| &campaign.surfaces[cycle.surface]);
+    let of_case = campaign
+        .cycles
+        .iter()
+        .find(|cycle| cycle.case == number)
+        .map(|cycle| &campaign.surfaces[cycle.surface]);
     // The import of a measured surface may have failed.
     let of_scan = of_case.filter(|of| surface.measured().is_some() && campaign.estimates_path(of).is_file());
     let row = of_scan.map(|of| SurfaceRow::read(campaign, of)).transpose()?;
@@ -145,14 +181,23 @@ fn case_input(campaign: &Campaign, number: usize, unit: &CaseUnit, standings: &[
         element_points: lattice.map(|lattice| lattice.points as f64),
         attraction_range_m: lattice.and_then(|lattice| lattice.range_m),
     };
-    let parameters = PARAMETERS.iter().map(|parameter| (parameter.column.name.to_owned(), (parameter.get)(&facts).into())).collect();
-    let failed = |(cycle, standing): (&CycleUnit, &Standing)| cycle.case == number && matches!(standing, Standing::Failed(_));
+    let parameters = PARAMETERS
+        .iter()
+        .map(|parameter| (parameter.column.name.to_owned(), (parameter.get)(&facts).into()))
+        .collect();
+    let failed = |(cycle, standing): (&CycleUnit, &Standing)| {
+        cycle.case == number && matches!(standing, Standing::Failed(_))
+    };
     Ok(CaseInput {
         case_id: unit.id.clone(),
         sweep: unit.case.sweeps.join("+"),
         parameters,
         max_loads: params.cycle.max_load.clone(),
-        precision: campaign.spec.realizations.until().map(|until| (until.of.word().to_owned(), until.until_relative_ci)),
+        precision: campaign
+            .spec
+            .realizations
+            .until()
+            .map(|until| (until.of.word().to_owned(), until.until_relative_ci)),
         planned_count: campaign.counts[number] as usize,
         failed_count: campaign.cycles.iter().zip(standings).filter(|pair| failed(*pair)).count(),
         surfaces: Vec::new(),

@@ -26,8 +26,9 @@ pub struct Comparison {
     pub names: Vec<String>,
 }
 
-/// Compares the campaigns in `folders` with the first one, and writes `comparison.parquet`, `comparison.html` and `figures/` into `out`. A comparison of
-/// other campaigns in `out`, and files that no comparison wrote, are replaced only if `force` is true.
+/// Compares the campaigns in `folders` with the first one, and writes `comparison.parquet`,
+/// `comparison.html` and `figures/` into `out`. A comparison of other campaigns in `out`, and files that no
+/// comparison wrote, are replaced only if `force` is true.
 ///
 /// # Errors
 /// If a folder is given twice, lacks its tables over realizations or has damaged ones; if cases cannot be
@@ -35,21 +36,32 @@ pub struct Comparison {
 /// cannot be written.
 pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Comparison, StageError> {
     let clock = Clock::start();
-    let same = |a: &PathBuf, b: &PathBuf| a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
-    if let Some((_, twice)) = folders.iter().enumerate().find(|(place, folder)| folders[..*place].iter().any(|other| same(other, folder))) {
+    let same = |a: &PathBuf, b: &PathBuf| {
+        a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+    };
+    if let Some((_, twice)) = folders
+        .iter()
+        .enumerate()
+        .find(|(place, folder)| folders[..*place].iter().any(|other| same(other, folder)))
+    {
         return Err(StageError::ComparedTwice { path: twice.clone() });
     }
     if let Some(run) = run_around(out) {
         return Err(StageError::IntoRun { path: out.to_owned(), run });
     }
-    let sides: Vec<Side> = labels(folders).into_iter().zip(folders).map(|(label, folder)| side(label, folder)).collect::<Result<_, _>>()?;
+    let sides: Vec<Side> = labels(folders)
+        .into_iter()
+        .zip(folders)
+        .map(|(label, folder)| side(label, folder))
+        .collect::<Result<_, _>>()?;
     let file = out.join(COMPARISON.file);
     if !force && file.exists() && of_others(&file, &sides) {
         return Err(StageError::OtherComparison { path: out.to_owned() });
     }
     let matched = stats::matched(&sides)?;
     if matched.groups.is_empty() {
-        let folders = folders.iter().map(|folder| folder.display().to_string()).collect::<Vec<_>>().join(", ");
+        let folders =
+            folders.iter().map(|folder| folder.display().to_string()).collect::<Vec<_>>().join(", ");
         return Err(StageError::NothingInCommon { folders });
     }
     let table = stats::comparison(&sides, &matched)?;
@@ -59,7 +71,13 @@ pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Compariso
         drawings.push((name.clone(), panels(&sides, group, &format!("compare{number}"))?));
     }
     let mut files = figures(&drawings, matched.groups.len())?;
-    let page = comparison_page(&Compared { sides: &sides, matched: &matched, names: &names, drawings: &drawings, table: &table })?;
+    let page = comparison_page(&Compared {
+        sides: &sides,
+        matched: &matched,
+        names: &names,
+        drawings: &drawings,
+        table: &table,
+    })?;
     files.push((PAGE.to_owned(), page.into_bytes()));
     write((out, force), &files, &table, &clock)?;
     Ok(Comparison { page: out.join(PAGE), table, names })
@@ -79,13 +97,21 @@ fn figures(drawings: &[(String, Vec<Panel>)], groups: usize) -> Result<Vec<(Stri
     Ok(files)
 }
 
-/// Writes the files of a comparison, its table and its receipt, and removes files of the comparison that was there.
-fn write((out, force): (&Path, bool), files: &[(String, Vec<u8>)], table: &Frame, clock: &Clock) -> Result<(), StageError> {
+/// Writes the files of a comparison, its table and its receipt, and removes files of the comparison that was
+/// there.
+fn write(
+    (out, force): (&Path, bool),
+    files: &[(String, Vec<u8>)],
+    table: &Frame,
+    clock: &Clock,
+) -> Result<(), StageError> {
     let earlier = match read_receipt(&comparison_receipt(out)) {
         Found::Whole(receipt) => receipt.files,
         _ => Vec::new(),
     };
-    let is_own = |place: &str| earlier.iter().any(|file| file.path == place && file.fault(out, Check::Contents).is_none());
+    let is_own = |place: &str| {
+        earlier.iter().any(|file| file.path == place && file.fault(out, Check::Contents).is_none())
+    };
     // Comparisons of earlier versions have no receipt, but their table.
     let is_known = earlier.is_empty() && out.join(COMPARISON.file).is_file();
     let is_foreign = |place: &&str| !is_known && !is_own(place) && out.join(place).symlink_metadata().is_ok();
@@ -96,7 +122,8 @@ fn write((out, force): (&Path, bool), files: &[(String, Vec<u8>)], table: &Frame
     for path in [out.to_owned(), out.join("figures")] {
         std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
     }
-    for file in earlier.iter().filter(|file| is_own(&file.path) && !places().any(|place| place == file.path)) {
+    for file in earlier.iter().filter(|file| is_own(&file.path) && !places().any(|place| place == file.path))
+    {
         let _ = std::fs::remove_file(out.join(&file.path));
     }
     let mut written = vec![parquet::write_table(&out.join(COMPARISON.file), table, &[])?];
@@ -109,7 +136,9 @@ fn write((out, force): (&Path, bool), files: &[(String, Vec<u8>)], table: &Frame
 /// True if a table compares other campaigns than these, or cannot be read.
 fn of_others(file: &Path, sides: &[Side]) -> bool {
     let Ok(table) = parquet::read_table(file, &COMPARISON) else { return true };
-    let (Ok(references), Ok(campaigns)) = (table.text("reference"), table.text("campaign")) else { return true };
+    let (Ok(references), Ok(campaigns)) = (table.text("reference"), table.text("campaign")) else {
+        return true;
+    };
     let Some((reference, others)) = sides.split_first() else { return true };
     references.iter().any(|label| *label != reference.label)
         || campaigns.iter().any(|label| others.iter().all(|side| side.label != *label))
@@ -118,11 +147,18 @@ fn of_others(file: &Path, sides: &[Side]) -> bool {
 
 /// Labels of campaigns: the names of their folders, or their whole paths where two have one name.
 fn labels(folders: &[PathBuf]) -> Vec<String> {
-    let name =
-        |folder: &PathBuf| folder.file_name().map_or_else(|| folder.display().to_string(), |name| name.to_string_lossy().into_owned());
+    let name = |folder: &PathBuf| {
+        folder
+            .file_name()
+            .map_or_else(|| folder.display().to_string(), |name| name.to_string_lossy().into_owned())
+    };
     let names: Vec<String> = folders.iter().map(name).collect();
     let alone = |name: &String| names.iter().filter(|other| *other == name).count() == 1;
-    if names.iter().all(alone) { names } else { folders.iter().map(|folder| folder.display().to_string()).collect() }
+    if names.iter().all(alone) {
+        names
+    } else {
+        folders.iter().map(|folder| folder.display().to_string()).collect()
+    }
 }
 
 fn side(label: String, folder: &Path) -> Result<Side, StageError> {
@@ -132,7 +168,12 @@ fn side(label: String, folder: &Path) -> Result<Side, StageError> {
             None => Ok(parquet::read_table(&folder.join(table.file), table)?),
         }
     };
-    Ok(Side { label, cases: read(&schema::CASES)?, realizations: read(&schema::REALIZATIONS)?, curves: read(&schema::CURVES)? })
+    Ok(Side {
+        label,
+        cases: read(&schema::CASES)?,
+        realizations: read(&schema::REALIZATIONS)?,
+        curves: read(&schema::CURVES)?,
+    })
 }
 
 /// Names of the groups: parameters that differ between the cases of the first campaign, and the load.
@@ -165,6 +206,7 @@ fn panels(sides: &[Side], group: &Group, stem: &str) -> Result<Vec<Panel>, Stage
         realizations.push((&side.realizations, of_case(&side.realizations)?, own));
     }
     let labels: Vec<String> = sides.iter().map(|side| side.label.clone()).collect();
-    let (cases, curves, realizations) = (stats::together(&cases)?, stats::together(&curves)?, stats::together(&realizations)?);
+    let (cases, curves, realizations) =
+        (stats::together(&cases)?, stats::together(&curves)?, stats::together(&realizations)?);
     Ok(compared(&Tables { cases: &cases, curves: &curves, realizations: &realizations }, &labels, stem)?)
 }

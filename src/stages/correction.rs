@@ -1,4 +1,5 @@
-//! Artefacts of a measured surface: their correction, the tip that measured it, and what its file says of them.
+//! Artefacts of a measured surface: their correction, the tip that measured it, and what its file says of
+//! them.
 
 use super::StageError;
 use crate::model::MeasuredSurface;
@@ -21,7 +22,8 @@ pub(super) fn corrected(
     treatment: &Treatment,
 ) -> Result<(Prepared, Quality), StageError> {
     // Rows and columns are those of the file.
-    let in_order = |heights: Array2<f64>| if first == FirstIndex::Y { heights.reversed_axes() } else { heights };
+    let in_order =
+        |heights: Array2<f64>| if first == FirstIndex::Y { heights.reversed_axes() } else { heights };
     let mut of_file = in_order(heights_m);
     let artefacts = correct(&mut of_file, &corrections(params));
     let heights_m = in_order(of_file);
@@ -41,17 +43,23 @@ pub(super) fn corrected(
 
 /// Corrections of a surface by its parameters.
 fn corrections(params: &MeasuredSurface) -> Corrections {
-    Corrections { outliers: params.outliers, align: params.align_rows.then_some(params.fast_axis), periodic: params.periodic }
+    Corrections {
+        outliers: params.outliers,
+        align: params.align_rows.then_some(params.fast_axis),
+        periodic: params.periodic,
+    }
 }
 
-/// Curvature of the sharpest summits over that of the sharpest valleys; nothing where the tip is known, or the surface is not rounded nearly everywhere.
+/// Curvature of the sharpest summits over that of the sharpest valleys; nothing where the tip is known, or
+/// the surface is not rounded nearly everywhere.
 fn rounded(params: &MeasuredSurface, heights_m: ArrayView2<'_, f64>, spacing_m: [f64; 2]) -> Option<f64> {
     // A quarter of the shortest wavelength resolves its curvature.
     let step = (params.points_per_shortest_wavelength / 4).max(1) as usize;
     if params.tip_radius_m > 0.0 { None } else { curvature_ratio(heights_m, spacing_m, step) }
 }
 
-/// The surface with an S-filter cut-off that is at least the reliability cut-off of its tip \[m\], and that cut-off.
+/// The surface with an S-filter cut-off that is at least the reliability cut-off of its tip \[m\], and that
+/// cut-off.
 fn with_tip(
     params: &MeasuredSurface,
     heights_m: Array2<f64>,
@@ -67,7 +75,9 @@ fn with_tip(
         return Ok((made(heights_m, treatment)?, None));
     }
     let prepared = made(heights_m.clone(), treatment)?;
-    let Some(cutoff_m) = reliability_cutoff(&prepared.rings, prepared.length_m, radius_m) else { return Ok((prepared, None)) };
+    let Some(cutoff_m) = reliability_cutoff(&prepared.rings, prepared.length_m, radius_m) else {
+        return Ok((prepared, None));
+    };
     if cutoff_m > LARGEST_CUTOFF * prepared.length_m {
         let why = format!(
             "a tip of radius {radius_m:.3e} m measures wavelengths above {cutoff_m:.3e} m only: shorter ones have a rms curvature of 1/R or more, \
@@ -80,7 +90,10 @@ fn with_tip(
         return Ok((prepared, Some(cutoff_m)));
     }
     let points = treatment.points_per_shortest_wavelength * cutoff_m / prepared.shortest_wavelength_m;
-    Ok((made(heights_m, &Treatment { points_per_shortest_wavelength: points, ..*treatment })?, Some(cutoff_m)))
+    Ok((
+        made(heights_m, &Treatment { points_per_shortest_wavelength: points, ..*treatment })?,
+        Some(cutoff_m),
+    ))
 }
 
 /// Artefacts as the file of a surface states them.

@@ -3,7 +3,8 @@
 /// Memory and time of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cost {
-    /// Grid points along a side: of the surface for the asperity model, of the periodic square for boundary elements.
+    /// Grid points along a side: of the surface for the asperity model, of the periodic square for boundary
+    /// elements.
     pub points: u64,
     /// Grid points per shortest wavelength.
     pub per_wavelength: f64,

@@ -3,12 +3,21 @@
 use super::StageError;
 use super::cycle::Square;
 use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
-use crate::schema::{Column, DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES};
+use crate::schema::{
+    Column, DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
+};
 use crate::stats::{CycleInput, Given, Value};
 use crate::store::{ColumnData, Frame, FrameError, parquet};
 
 /// Columns of a failed cycle that depend on its surface alone.
-const OF_FAILED: [&str; 6] = ["summit_count", "filter_overshoot", "outlier_share", "line_jump_share", "noise_share", "curvature_ratio"];
+const OF_FAILED: [&str; 6] = [
+    "summit_count",
+    "filter_overshoot",
+    "outlier_share",
+    "line_jump_share",
+    "noise_share",
+    "curvature_ratio",
+];
 
 /// The row of a surface in its table of estimates.
 pub(super) struct SurfaceRow(Frame);
@@ -31,9 +40,11 @@ impl SurfaceRow {
     }
 }
 
-/// Columns of a failed cycle that depend on its surface and the material alone: those of its failure record, and those of its surface if that could be made.
+/// Columns of a failed cycle that depend on its surface and the material alone: those of its failure record,
+/// and those of its surface if that could be made.
 pub(super) fn of_failed(campaign: &Campaign, unit: &CycleUnit) -> Given {
-    let mut columns: Given = campaign.failure_estimates(unit).into_iter().map(|(name, value)| (name, value.into())).collect();
+    let mut columns: Given =
+        campaign.failure_estimates(unit).into_iter().map(|(name, value)| (name, value.into())).collect();
     let row = SurfaceRow::read(campaign, &campaign.surfaces[unit.surface]).ok();
     let of_surface = row.and_then(|row| given(&row.0, OF_SURFACE, 0).ok()).unwrap_or_default();
     columns.extend(of_surface.into_iter().filter(|(name, _)| OF_FAILED.contains(&name.as_str())));
@@ -47,7 +58,9 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     let estimates = parquet::read_table(&folder.join("estimates.parquet"), &ESTIMATES)?;
     let slips = case.case.params.slips();
     let errata = usize::from(slips.a2) + 2 * usize::from(slips.a3);
-    let deng_kesari = |columns: &[Column; 4]| estimates.f64_or_null(columns[errata].name).map(|values| values.first().copied().flatten());
+    let deng_kesari = |columns: &[Column; 4]| {
+        estimates.f64_or_null(columns[errata].name).map(|values| values.first().copied().flatten())
+    };
     let loads = estimates.f64("max_load")?;
     let at_load = |(row, load): (usize, &f64)| {
         let mut columns = given(&estimates, OF_LOAD, row)?;

@@ -1,7 +1,8 @@
-//! `datapackage.json`: what tables a run has and what their columns mean, as the Data Package standard (version 2) has it.
+//! `datapackage.json`: what tables a run has and what their columns mean, as the Data Package standard
+//! (version 2) has it.
 //!
-//! Each file is a resource of its own: readers of a resource of several Parquet files read the first one. Files of one kind share
-//! a schema in `schemas/`, which their resources name.
+//! Each file is a resource of its own: readers of a resource of several Parquet files read the first one.
+//! Files of one kind share a schema in `schemas/`, which their resources name.
 
 use crate::campaign::Campaign;
 use crate::schema::{Column, Kind, TABLES, Table};
@@ -10,7 +11,8 @@ use serde_json::{Value, json};
 /// Files that describe the tables of a run: places below its folder, and contents.
 pub(super) type Described = Vec<(String, String)>;
 
-/// The schemas of the tables of which a run has several files, and `datapackage.json`, which describes the tables of all finished cycles.
+/// The schemas of the tables of which a run has several files, and `datapackage.json`, which describes the
+/// tables of all finished cycles.
 pub(super) fn files(campaign: &Campaign, done: &[bool]) -> Described {
     let ids = Ids::of(campaign, done);
     let mut files = Described::new();
@@ -34,7 +36,8 @@ pub(super) fn files(campaign: &Campaign, done: &[bool]) -> Described {
             files.push((place.clone(), format!("{:#}\n", schema(table))));
         }
     }
-    resources.extend(ids.surfaces.iter().map(|id| hdf5("surfaces", id, format!("surfaces/{id}.h5"), SURFACE)));
+    resources
+        .extend(ids.surfaces.iter().map(|id| hdf5("surfaces", id, format!("surfaces/{id}.h5"), SURFACE)));
     let maps = |id: &&str| {
         let file = format!("cycles/{id}/maps.h5");
         campaign.dir.join(&file).is_file().then(|| hdf5("maps", id, file, MAPS))

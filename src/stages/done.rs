@@ -43,13 +43,19 @@ impl Clock {
         outcome: &Outcome,
     ) -> Result<(), StageError> {
         let words = [unit.stage.word(), unit.id, unit.key].map(str::to_owned);
-        Ok(write_receipt(&campaign.receipt_path(unit), &self.filled(&campaign.dir, words, preimages, outcome))?)
+        Ok(write_receipt(
+            &campaign.receipt_path(unit),
+            &self.filled(&campaign.dir, words, preimages, outcome),
+        )?)
     }
 
     /// Writes the receipt of the resolved spec, which belongs to no stage.
     pub(super) fn spec_receipt(&self, campaign: &Campaign, outcome: &Outcome) -> Result<(), StageError> {
         let words = ["spec", "campaign", ""].map(str::to_owned);
-        Ok(write_receipt(&campaign.spec_receipt_path(), &self.filled(&campaign.dir, words, campaign.resolved_record(), outcome))?)
+        Ok(write_receipt(
+            &campaign.spec_receipt_path(),
+            &self.filled(&campaign.dir, words, campaign.resolved_record(), outcome),
+        )?)
     }
 
     /// Writes the receipt of a comparison into its folder.
@@ -57,12 +63,19 @@ impl Clock {
         let words = [COMPARE, COMPARISON, ""].map(str::to_owned);
         let path = comparison_receipt(dir);
         if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(|source| StageError::Folder { path: folder.to_owned(), source })?;
+            std::fs::create_dir_all(folder)
+                .map_err(|source| StageError::Folder { path: folder.to_owned(), source })?;
         }
         Ok(write_receipt(&path, &self.filled(dir, words, Map::new(), &Outcome::of(files)))?)
     }
 
-    fn filled(&self, dir: &Path, [stage, id, key]: [String; 3], preimages: Map<String, Value>, outcome: &Outcome) -> Receipt {
+    fn filled(
+        &self,
+        dir: &Path,
+        [stage, id, key]: [String; 3],
+        preimages: Map<String, Value>,
+        outcome: &Outcome,
+    ) -> Receipt {
         let files = outcome.files.iter().map(|written| Kept::of(written, dir)).collect();
         Receipt { receipt: RECEIPT_VERSION, stage, id, key, preimages, files, made: self.made(outcome) }
     }

@@ -28,7 +28,10 @@ pub enum StageError {
     #[error(transparent)]
     Figure(#[from] crate::figures::FigureError),
     /// The output folder.
-    #[error("cannot create the directory {}: {source}\nhelp: give a writable directory with --out DIR", shown(path))]
+    #[error(
+        "cannot create the directory {}: {source}\nhelp: give a writable directory with --out DIR",
+        shown(path)
+    )]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -46,7 +49,8 @@ pub enum StageError {
     /// The file of a measured surface, which is not in the form that it seems to be in.
     #[error(transparent)]
     Scan(StoreError),
-    /// A measured surface that changed after the spec was read. It is no failure of a case, whose keys refer to the former file.
+    /// A measured surface that changed after the spec was read. It is no failure of a case, whose keys refer
+    /// to the former file.
     #[error("cannot import the surface {}: {why}", shown(path))]
     Changed {
         /// File.
@@ -56,7 +60,8 @@ pub enum StageError {
     },
     /// The file of a measured surface is in none of the places to which its name in the spec leads.
     #[error(
-        "cannot import the surface {}: no such file\nhelp: it was looked for at {}; put it there, or run the spec with its new place (--out DIR)",
+        "cannot import the surface {}: no such file\nhelp: it was looked for at {}; put it there, or run the \
+         spec with its new place (--out DIR)",
         shown(path),
         listed(places)
     )]
@@ -67,7 +72,11 @@ pub enum StageError {
         places: Vec<PathBuf>,
     },
     /// A folder in the place of a file that a task writes, or a file in the place of its folder.
-    #[error("cannot write {}: {what} of this name exists\nhelp: remove or rename it; the next run computes the task", shown(path))]
+    #[error(
+        "cannot write {}: {what} of this name exists\nhelp: remove or rename it; the next run computes the \
+         task",
+        shown(path)
+    )]
     InTheWay {
         /// The place.
         path: PathBuf,
@@ -124,14 +133,19 @@ pub enum StageError {
         path: PathBuf,
     },
     /// A comparison of other campaigns in the place of a new one.
-    #[error("{} holds the comparison of other runs\nhelp: write to another folder with --out DIR, or replace it with --force", shown(path))]
+    #[error(
+        "{} holds the comparison of other runs\nhelp: write to another folder with --out DIR, or replace it \
+         with --force",
+        shown(path)
+    )]
     OtherComparison {
         /// Its folder.
         path: PathBuf,
     },
     /// A comparison that would be mixed with a run.
     #[error(
-        "cannot write the comparison to {}: it belongs to the run {}\nhelp: write to another folder with --out DIR",
+        "cannot write the comparison to {}: it belongs to the run {}\nhelp: write to another folder with \
+         --out DIR",
         shown(path),
         shown(run)
     )]
@@ -143,7 +157,8 @@ pub enum StageError {
     },
     /// A file that no comparison wrote, in the place of one of a comparison.
     #[error(
-        "cannot write the comparison: {} exists and is not as `hysteron compare` wrote it\nhelp: write to another folder with --out DIR, or replace it with --force",
+        "cannot write the comparison: {} exists and is not as `hysteron compare` wrote it\nhelp: write to \
+         another folder with --out DIR, or replace it with --force",
         shown(path)
     )]
     ForeignComparison {
@@ -152,7 +167,8 @@ pub enum StageError {
     },
     /// A file that no run wrote, in the place of one of a run.
     #[error(
-        "cannot run in this folder: {} was not written by a run\nhelp: choose another folder with --out DIR, or move the file",
+        "cannot run in this folder: {} was not written by a run\nhelp: choose another folder with --out DIR, \
+         or move the file",
         shown(path)
     )]
     Foreign {
@@ -161,7 +177,8 @@ pub enum StageError {
     },
     /// A file that is not as it was written.
     #[error(
-        "cannot use the results in {}: {why}\nhelp: `hysteron verify {} --deep` lists all faults, `hysteron run {}` repairs them",
+        "cannot use the results in {}: {why}\nhelp: `hysteron verify {} --deep` lists all faults, `hysteron \
+         run {}` repairs them",
         shown(dir),
         shell_path(dir),
         shell_path(dir)
@@ -174,7 +191,8 @@ pub enum StageError {
     },
     /// Campaigns without a case in common.
     #[error(
-        "cannot compare {folders}: no case with otherwise equal parameters is in all runs\nhelp: compare runs that differ in one parameter"
+        "cannot compare {folders}: no case with otherwise equal parameters is in all runs\nhelp: compare \
+         runs that differ in one parameter"
     )]
     NothingInCommon {
         /// Their folders.
@@ -201,7 +219,8 @@ pub enum StageError {
     },
     /// A single stage in a folder without a run.
     #[error(
-        "cannot run the stage {stage}: {} has no campaign.toml\nhelp: run the previous stages first, or name the output folder of the run with --out",
+        "cannot run the stage {stage}: {} has no campaign.toml\nhelp: run the previous stages first, or name \
+         the output folder of the run with --out",
         shown(path)
     )]
     NoRun {
@@ -220,7 +239,8 @@ fn listed(paths: &[PathBuf]) -> String {
 /// Numbers of tasks that a stage lacks.
 fn lacks(missing: usize, damaged: usize) -> String {
     let parts = [(missing, "not computed"), (damaged, "stale or damaged")];
-    let parts: Vec<String> = parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+    let parts: Vec<String> =
+        parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
     parts.join(" and ")
 }
 
@@ -233,11 +253,18 @@ fn incomplete_help(stage: &str) -> &'static str {
 }
 
 /// The error of a stage whose inputs have these states; `None` if all are done.
-pub(super) fn incomplete(campaign: &Campaign, stage: Stage, inputs: &[(String, Standing)]) -> Option<StageError> {
+pub(super) fn incomplete(
+    campaign: &Campaign,
+    stage: Stage,
+    inputs: &[(String, Standing)],
+) -> Option<StageError> {
     let lacking = || inputs.iter().filter(|(_, standing)| *standing != Standing::Done);
     let (id, standing) = lacking().next()?;
-    let missing =
-        lacking().filter(|(_, standing)| matches!(standing, Standing::Planned | Standing::Interrupted | Standing::Failed(_))).count();
+    let missing = lacking()
+        .filter(|(_, standing)| {
+            matches!(standing, Standing::Planned | Standing::Interrupted | Standing::Failed(_))
+        })
+        .count();
     Some(StageError::Incomplete {
         stage: stage.word(),
         path: campaign.dir.clone(),
@@ -258,7 +285,8 @@ impl From<LoopError> for StageError {
 fn help(error: &PhysicsError) -> String {
     let text = match error {
         PhysicsError::LowTabor { .. } => {
-            "reduce material.interaction_range_m, set model.jump_in = \"jkr\", or set model.allow_low_tabor = true for a result with a warning"
+            "reduce material.interaction_range_m, set model.jump_in = \"jkr\", or set model.allow_low_tabor \
+             = true for a result with a warning"
         }
         PhysicsError::Loop(error) => help_of_loop(error),
         _ => return String::new(),
@@ -269,25 +297,36 @@ fn help(error: &PhysicsError) -> String {
 fn help_of_loop(error: &LoopError) -> &'static str {
     match error {
         LoopError::NoEquilibrium { .. } => {
-            "contacts that grow together may have none: reduce cycle.max_load; with model.coalescence = \"merge\" or \"none\", try \"cover\""
+            "contacts that grow together may have none: reduce cycle.max_load; with model.coalescence = \
+             \"merge\" or \"none\", try \"cover\""
         }
-        LoopError::EndlessAvalanche { .. } => "reduce cycle.max_load; with model.coalescence = \"cover\" or \"merge\", try \"none\"",
+        LoopError::EndlessAvalanche { .. } => {
+            "reduce cycle.max_load; with model.coalescence = \"cover\" or \"merge\", try \"none\""
+        }
         LoopError::Closed { .. } => {
-            "set boundary_elements.opening = \"strength\", or reduce cycle.max_load if adhesion alone does not close the contact"
+            "set boundary_elements.opening = \"strength\", or reduce cycle.max_load if adhesion alone does \
+             not close the contact"
         }
-        LoopError::Inseparable { .. } => "set boundary_elements.opening = \"anywhere\", or reduce the work of adhesion",
+        LoopError::Inseparable { .. } => {
+            "set boundary_elements.opening = \"anywhere\", or reduce the work of adhesion"
+        }
         LoopError::ExcessArea { load_before_n, .. } if *load_before_n > 0.0 => {
             "reduce cycle.max_load, or set model.method = \"boundary_elements\", which reaches full contact"
         }
         LoopError::ExcessArea { .. } => {
-            "adhesion alone closes the contact, so a smaller cycle.max_load has no effect: set model.method = \"boundary_elements\", which reaches full contact"
+            "adhesion alone closes the contact, so a smaller cycle.max_load has no effect: set model.method \
+             = \"boundary_elements\", which reaches full contact"
         }
         LoopError::NegativeDissipation { .. } | LoopError::EnergyImbalance { .. } => {
-            "reduce cycle.max_load, or set model.method = \"boundary_elements\", which has the energy of weak adhesion as well"
+            "reduce cycle.max_load, or set model.method = \"boundary_elements\", which has the energy of \
+             weak adhesion as well"
         }
-        LoopError::UnresolvedLoop { .. } => "reduce boundary_elements.approach_step, or boundary_elements.precision",
+        LoopError::UnresolvedLoop { .. } => {
+            "reduce boundary_elements.approach_step, or boundary_elements.precision"
+        }
         LoopError::LoadNotReached { .. } => {
-            "reduce cycle.max_load; near full contact the load stays tensile: set model.method = \"boundary_elements\""
+            "reduce cycle.max_load; near full contact the load stays tensile: set model.method = \
+             \"boundary_elements\""
         }
     }
 }

@@ -48,7 +48,8 @@ impl Examined {
         let cut_off_m = header.measured.as_ref().map_or(0.0, |of| of.shortest_wavelength_m);
         let points = cut_off_m * heights.nrows() as f64 / header.length_m;
         let (found, edge_count) = find_measured(square, points)?;
-        let estimates = SurfaceEstimates::of_measured(square, cut_off_m, roughness(header), found.list.len())?;
+        let estimates =
+            SurfaceEstimates::of_measured(square, cut_off_m, roughness(header), found.list.len())?;
         Ok(Self { found, edge_count, estimates })
     }
 
@@ -59,8 +60,10 @@ impl Examined {
         header: &SurfaceHeader,
         heights: ArrayView2<'_, f64>,
     ) -> Result<Self, StageError> {
-        let found = find_summits(heights, header.length_m, f64::from(surface.points_per_shortest_wavelength))?;
-        let estimates = SurfaceEstimates::of_generated(&surface.spectrum(), seed, roughness(header), found.list.len());
+        let found =
+            find_summits(heights, header.length_m, f64::from(surface.points_per_shortest_wavelength))?;
+        let estimates =
+            SurfaceEstimates::of_generated(&surface.spectrum(), seed, roughness(header), found.list.len());
         Ok(Self { found, edge_count: 0, estimates })
     }
 
@@ -82,10 +85,15 @@ pub(super) fn seed(campaign: &Campaign, unit: &SurfaceUnit) -> [u8; 32] {
 }
 
 /// Table of one row with the estimates of a surface.
-pub(super) fn surface_table(unit: &SurfaceUnit, header: &SurfaceHeader, of: &SurfaceEstimates) -> Result<Frame, FrameError> {
+pub(super) fn surface_table(
+    unit: &SurfaceUnit,
+    header: &SurfaceHeader,
+    of: &SurfaceEstimates,
+) -> Result<Frame, FrameError> {
     let texture = header.measured.as_ref().and_then(|of| of.texture.as_ref());
     let artefacts = header.artefact_columns();
-    let artefact = |name: &str| artefacts.iter().find(|(known, _)| *known == name).and_then(|(_, value)| *value);
+    let artefact =
+        |name: &str| artefacts.iter().find(|(known, _)| *known == name).and_then(|(_, value)| *value);
     let overshoot = header.measured.as_ref().map(|measured| measured.overshoot_m / header.rms_height_m);
     let frame = Frame::of(&SURFACE_ESTIMATES)
         .text("surface_id", [unit.id.as_str()])
@@ -137,14 +145,16 @@ pub(super) fn read_surface_estimates(path: &Path) -> Result<SurfaceEstimates, St
     })
 }
 
-/// Estimates of a failed cycle that depend on its surface and the material alone, by their columns in the table `estimates`.
+/// Estimates of a failed cycle that depend on its surface and the material alone, by their columns in the
+/// table `estimates`.
 ///
 /// The spectrum of a generated surface that could not be made is known from the spec and the seed.
 pub(super) fn of_failed(campaign: &Campaign, unit: &CycleUnit) -> Vec<(&'static str, f64)> {
     let (params, surface) = (&campaign.cases[unit.case].case.params, &campaign.surfaces[unit.surface]);
     let target = target(params);
     let known = read_surface_estimates(&campaign.estimates_path(surface)).ok().map(|of| of.flattening);
-    let of_seed = || target.as_ref().map(|spectrum| RelativeFlattening::realised(spectrum, &seed(campaign, surface)));
+    let of_seed =
+        || target.as_ref().map(|spectrum| RelativeFlattening::realised(spectrum, &seed(campaign, surface)));
     let ratios = Ratios::of(target.as_ref(), known.or_else(of_seed).as_ref(), &params.material);
     let columns = [
         ("conformity", ratios.conformity),

@@ -23,8 +23,20 @@ const MOST_SPOTS: usize = 40_000;
 
 /// Limits of the loop explorer.
 pub(super) const CONSTANTS: &[Constant] = &[
-    Constant::new("cycles in the loop explorer", &[MOST_CYCLES as f64], "", "Maximum: one for each of the first cases.", ""),
-    Constant::new("grid points along a side", &[MOST_POINTS as f64], "", "Maximum of a surface in the loop explorer.", ""),
+    Constant::new(
+        "cycles in the loop explorer",
+        &[MOST_CYCLES as f64],
+        "",
+        "Maximum: one for each of the first cases.",
+        "",
+    ),
+    Constant::new(
+        "grid points along a side",
+        &[MOST_POINTS as f64],
+        "",
+        "Maximum of a surface in the loop explorer.",
+        "",
+    ),
     Constant::new(
         "contact spots of a loop",
         &[MOST_SPOTS as f64],
@@ -41,7 +53,12 @@ fn kinds() -> Vec<(&'static str, &'static str)> {
 }
 
 /// The data as JSON; nothing without a finished cycle.
-pub(super) fn explorer(campaign: &Campaign, standings: &[Standing], cases: &Frame, methods: &Frame) -> Result<Option<String>, StageError> {
+pub(super) fn explorer(
+    campaign: &Campaign,
+    standings: &[Standing],
+    cases: &Frame,
+    methods: &Frame,
+) -> Result<Option<String>, StageError> {
     let pairs = Pairs::of(methods)?;
     let picked = pick(campaign, standings, &pairs);
     let list = listing(cases)?;
@@ -78,7 +95,9 @@ impl<'a> Pairs<'a> {
 
     /// Surface of the first pair with this case.
     fn surface(&self, case: &str) -> Option<&str> {
-        (0..self.surfaces.len()).find(|row| self.cases.iter().any(|ids| ids[*row] == case)).map(|row| self.surfaces[row])
+        (0..self.surfaces.len())
+            .find(|row| self.cases.iter().any(|ids| ids[*row] == case))
+            .map(|row| self.surfaces[row])
     }
 
     /// True if two cycles are one case by both methods on one surface.
@@ -95,14 +114,22 @@ impl<'a> Pairs<'a> {
 
 /// One finished cycle of each case: where both methods have finished a surface, on that one.
 fn pick<'a>(campaign: &'a Campaign, standings: &[Standing], pairs: &Pairs<'_>) -> Vec<&'a CycleUnit> {
-    let finished =
-        |unit: &CycleUnit| campaign.surfaces[unit.surface].params.generated().is_none_or(|surface| surface.grid() <= MOST_POINTS);
-    let done: Vec<&CycleUnit> =
-        campaign.cycles.iter().zip(standings).filter(|(_, of)| **of == Standing::Done).map(|(unit, _)| unit).collect();
+    let finished = |unit: &CycleUnit| {
+        campaign.surfaces[unit.surface].params.generated().is_none_or(|surface| surface.grid() <= MOST_POINTS)
+    };
+    let done: Vec<&CycleUnit> = campaign
+        .cycles
+        .iter()
+        .zip(standings)
+        .filter(|(_, of)| **of == Standing::Done)
+        .map(|(unit, _)| unit)
+        .collect();
     let mut picked: Vec<&CycleUnit> = Vec::new();
     for (place, case) in campaign.cases.iter().enumerate() {
         let of_case = || done.iter().filter(|unit| unit.case == place && finished(unit));
-        let paired = pairs.surface(&case.id).and_then(|id| of_case().find(|unit| campaign.surfaces[unit.surface].id == id));
+        let paired = pairs
+            .surface(&case.id)
+            .and_then(|id| of_case().find(|unit| campaign.surfaces[unit.surface].id == id));
         let Some(unit) = paired.or_else(|| of_case().next()) else { continue };
         if picked.iter().all(|other| other.id != unit.id) && picked.len() < MOST_CYCLES {
             picked.push(unit);
@@ -114,7 +141,8 @@ fn pick<'a>(campaign: &'a Campaign, standings: &[Standing], pairs: &Pairs<'_>) -
 /// Name of a cycle: the label of its case, the method where both are there, and the realization.
 fn name(campaign: &Campaign, unit: &CycleUnit, cases: &Frame, list: &Listing) -> Result<String, StageError> {
     let (ids, case) = (cases.text("case_id")?, &campaign.cases[unit.case]);
-    let label = list.rows.iter().find(|listed| ids[listed.row] == case.id).map_or("", |listed| listed.label.as_str());
+    let label =
+        list.rows.iter().find(|listed| ids[listed.row] == case.id).map_or("", |listed| listed.label.as_str());
     let label = if label.is_empty() { case.id.as_str() } else { label };
     Ok(format!("{label}, realization {}", campaign.surfaces[unit.surface].realization))
 }
@@ -137,7 +165,12 @@ fn cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Value, StageError> {
     // Files that one of the methods alone writes say what there is to be shown.
     let is_there = |file: &str| folder.join(file).is_file();
     let merged = is_there("merged.parquet").then(|| table(&schema::MERGED)).transpose()?;
-    let tables = Tables { steps: table(&schema::STEPS)?, events: table(&schema::EVENTS)?, contacts: table(&schema::CONTACTS)?, merged };
+    let tables = Tables {
+        steps: table(&schema::STEPS)?,
+        events: table(&schema::EVENTS)?,
+        contacts: table(&schema::CONTACTS)?,
+        merged,
+    };
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let mut of = json!({ "id": unit.id, "length_m": header.length_m });
     let energy = params.material.contact_modulus_pa * header.length_m.powi(2) * header.rms_height_m;
@@ -147,7 +180,11 @@ fn cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Value, StageError> {
         stored_maps(&folder.join(MAPS), &mut of["loops"])?;
         return Ok(of);
     }
-    spots.find(&tables, &read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?, header.length_m)?;
+    spots.find(
+        &tables,
+        &read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?,
+        header.length_m,
+    )?;
     of["loops"] = loops(&tables, &spots, energy, header.length_m)?;
     of["ground"] = json!(ground(heights.view()));
     of["periodic"] = json!(params.boundary() == Boundary::Periodic);
@@ -158,8 +195,8 @@ fn cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Value, StageError> {
     Ok(of)
 }
 
-/// Number of an asperity or a merged contact. Those of merged contacts go on during each unloading from that of its load reversal, so that its load
-/// belongs to them (bits of F_max).
+/// Number of an asperity or a merged contact. Those of merged contacts go on during each unloading from that
+/// of its load reversal, so that its load belongs to them (bits of F_max).
 type Key = (Option<u64>, i64);
 /// Both parts and the centre \[m\] of each merged contact.
 type Parts = BTreeMap<Key, ([i64; 2], (f64, f64))>;
@@ -179,7 +216,9 @@ impl Spots {
     /// The asperities and merged contacts that have an event or are stored in contact.
     fn find(&mut self, tables: &Tables, asperities: &Frame, length_m: f64) -> Result<(), FrameError> {
         let merged = tables.merged.as_ref().map(parts).transpose()?.unwrap_or_default();
-        let key = |branch: Option<u64>, id: i64| if merged.contains_key(&(branch, id)) { (branch, id) } else { (None, id) };
+        let key = |branch: Option<u64>, id: i64| {
+            if merged.contains_key(&(branch, id)) { (branch, id) } else { (None, id) }
+        };
         let mut used: BTreeSet<Key> = BTreeSet::new();
         for table in [&tables.events, &tables.contacts] {
             let rows = table.f64_or_null("max_load")?.iter().zip(table.i64_or_null("asperity_id")?);
@@ -188,7 +227,8 @@ impl Spots {
         used.extend(merged.iter().flat_map(|((branch, _), (of, _))| of.map(|part| key(*branch, part))));
         let (x, y) = (asperities.f64("x_m")?, asperities.f64("y_m")?);
         for spot in used {
-            let own = || usize::try_from(spot.1).ok().and_then(|id| x.get(id).copied().zip(y.get(id).copied()));
+            let own =
+                || usize::try_from(spot.1).ok().and_then(|id| x.get(id).copied().zip(y.get(id).copied()));
             if let Some((x, y)) = merged.get(&spot).map(|(_, at)| *at).or_else(own) {
                 self.ids.insert(spot, self.at.len());
                 self.at.push(((x / length_m * 1e4).round() as i64, (y / length_m * 1e4).round() as i64));
@@ -196,7 +236,8 @@ impl Spots {
         }
         for (spot, (of, _)) in &merged {
             if let Some(place) = self.ids.get(spot) {
-                let of: Vec<usize> = of.iter().filter_map(|part| self.ids.get(&key(spot.0, *part)).copied()).collect();
+                let of: Vec<usize> =
+                    of.iter().filter_map(|part| self.ids.get(&key(spot.0, *part)).copied()).collect();
                 self.merged.insert(place.to_string(), json!(of));
             }
         }
@@ -211,7 +252,8 @@ impl Spots {
 }
 
 fn parts(merged: &Frame) -> Result<Parts, FrameError> {
-    let [ids, first, second] = [merged.i64("asperity_id")?, merged.i64("first_id")?, merged.i64("second_id")?];
+    let [ids, first, second] =
+        [merged.i64("asperity_id")?, merged.i64("first_id")?, merged.i64("second_id")?];
     let (x, y, of) = (merged.f64("x_m")?, merged.f64("y_m")?, merged.f64_or_null("max_load")?);
     let key = |row: usize| (of[row].map(f64::to_bits), ids[row]);
     Ok((0..ids.len()).map(|row| (key(row), ([first[row], second[row]], (x[row], y[row])))).collect())
@@ -221,7 +263,8 @@ fn parts(merged: &Frame) -> Result<Parts, FrameError> {
 fn loops(tables: &Tables, spots: &Spots, energy_j: f64, length_m: f64) -> Result<Value, FrameError> {
     let steps = &tables.steps;
     let (numbers, branches, of) = (steps.i64("step")?, steps.text("branch")?, steps.f64_or_null("max_load")?);
-    let (load, penetration, area, count) = (steps.f64("load")?, steps.f64("penetration")?, steps.f64("area")?, steps.i64("contact_count")?);
+    let (load, penetration, area, count) =
+        (steps.f64("load")?, steps.f64("penetration")?, steps.f64("area")?, steps.i64("contact_count")?);
     let reversed = steps.f64_or_null("reversal_load")?;
     let mut reversals: Vec<f64> = of.iter().flatten().copied().collect();
     reversals.sort_by(f64::total_cmp);
@@ -230,9 +273,11 @@ fn loops(tables: &Tables, spots: &Spots, energy_j: f64, length_m: f64) -> Result
     for max_load in reversals {
         let Some(reversal) = reversed.iter().position(|load| *load == Some(max_load)) else { continue };
         let loading: Vec<usize> = (0..=reversal).filter(|row| branches[*row] == "loading").collect();
-        let down = (0..numbers.len()).filter(|row| branches[*row] == "unloading" && of[*row] == Some(max_load));
+        let down =
+            (0..numbers.len()).filter(|row| branches[*row] == "unloading" && of[*row] == Some(max_load));
         let rows: Vec<usize> = loading.iter().copied().chain(down).collect();
-        let places: BTreeMap<i64, usize> = rows.iter().enumerate().map(|(k, row)| (numbers[*row], k)).collect();
+        let places: BTreeMap<i64, usize> =
+            rows.iter().enumerate().map(|(k, row)| (numbers[*row], k)).collect();
         let column = |values: &[f64]| rows.iter().map(|row| rounded(values[*row])).collect::<Vec<f64>>();
         all.push(json!({
             "load": max_load,
@@ -249,34 +294,62 @@ fn loops(tables: &Tables, spots: &Spots, energy_j: f64, length_m: f64) -> Result
     Ok(Value::Array(all))
 }
 
-/// Events of a loop: place of the step, kind, spot or -1, avalanche, dissipated energy over `E* A0 h_rms`, status or null.
-fn events(events: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, energy_j: f64) -> Result<Value, FrameError> {
+/// Events of a loop: place of the step, kind, spot or -1, avalanche, dissipated energy over `E* A0 h_rms`,
+/// status or null.
+fn events(
+    events: &Frame,
+    spots: &Spots,
+    places: &BTreeMap<i64, usize>,
+    energy_j: f64,
+) -> Result<Value, FrameError> {
     let numbered = kinds();
     let (steps, kinds, ids) = (events.i64("step")?, events.text("kind")?, events.i64_or_null("asperity_id")?);
     let statuses = events.text_or_null("status")?;
-    let (avalanches, energies, of) = (events.i64("avalanche_id")?, events.f64_or_null("energy_lost_j")?, events.f64_or_null("max_load")?);
+    let (avalanches, energies, of) =
+        (events.i64("avalanche_id")?, events.f64_or_null("energy_lost_j")?, events.f64_or_null("max_load")?);
     let mut rows: Vec<(usize, Value)> = Vec::new();
     for row in 0..steps.len() {
-        let (Some(k), Some(kind)) = (places.get(&steps[row]), numbered.iter().position(|(word, _)| *word == kinds[row])) else { continue };
+        let (Some(k), Some(kind)) =
+            (places.get(&steps[row]), numbered.iter().position(|(word, _)| *word == kinds[row]))
+        else {
+            continue;
+        };
         let spot = spots.place(of[row], ids[row]).map_or(-1, |spot| spot as i64);
-        let energy = significant(energies[row].unwrap_or_default() / energy_j, 3).parse::<f64>().unwrap_or_default();
-        let status = SpotStatus::ALL.iter().position(|status| Some(status.word()) == statuses[row].as_deref());
+        let energy =
+            significant(energies[row].unwrap_or_default() / energy_j, 3).parse::<f64>().unwrap_or_default();
+        let status =
+            SpotStatus::ALL.iter().position(|status| Some(status.word()) == statuses[row].as_deref());
         rows.push((*k, json!([k, kind, spot, avalanches[row], energy, status])));
     }
     rows.sort_by_key(|(k, _)| *k);
     Ok(rows.into_iter().map(|(_, row)| row).collect())
 }
 
-/// Contact spots of the stored steps of a loop: spot, and radius in 10⁻⁵ of the side, negative for a tensile load.
-fn frames(contacts: &Frame, spots: &Spots, places: &BTreeMap<i64, usize>, length_m: f64) -> Result<Value, FrameError> {
-    let (steps, states, ids) = (contacts.i64("step")?, contacts.text("state")?, contacts.i64_or_null("asperity_id")?);
-    let (radii, loads, of) =
-        (contacts.f64_or_null("contact_radius_m")?, contacts.f64_or_null("load_n")?, contacts.f64_or_null("max_load")?);
+/// Contact spots of the stored steps of a loop: spot, and radius in 10⁻⁵ of the side, negative for a tensile
+/// load.
+fn frames(
+    contacts: &Frame,
+    spots: &Spots,
+    places: &BTreeMap<i64, usize>,
+    length_m: f64,
+) -> Result<Value, FrameError> {
+    let (steps, states, ids) =
+        (contacts.i64("step")?, contacts.text("state")?, contacts.i64_or_null("asperity_id")?);
+    let (radii, loads, of) = (
+        contacts.f64_or_null("contact_radius_m")?,
+        contacts.f64_or_null("load_n")?,
+        contacts.f64_or_null("max_load")?,
+    );
     let mut frames: BTreeMap<usize, Vec<i64>> = BTreeMap::new();
     for row in (0..steps.len()).filter(|row| states[*row] == "contact") {
-        let (Some(k), Some(spot)) = (places.get(&steps[row]), spots.place(of[row], ids[row])) else { continue };
+        let (Some(k), Some(spot)) = (places.get(&steps[row]), spots.place(of[row], ids[row])) else {
+            continue;
+        };
         let radius = ((radii[row].unwrap_or_default() / length_m * 1e5).round() as i64).max(1);
-        frames.entry(*k).or_default().extend([spot as i64, if loads[row].unwrap_or_default() < 0.0 { -radius } else { radius }]);
+        frames
+            .entry(*k)
+            .or_default()
+            .extend([spot as i64, if loads[row].unwrap_or_default() < 0.0 { -radius } else { radius }]);
     }
     let every = (frames.values().map(Vec::len).sum::<usize>() / 2).div_ceil(MOST_SPOTS).max(1);
     let kept = frames.into_iter().enumerate().filter(|(place, _)| place % every == 0);

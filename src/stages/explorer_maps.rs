@@ -28,17 +28,22 @@ fn cells<T: Copy>(of: ArrayView2<'_, T>, most: usize, level: impl Fn(T) -> f64) 
     let count = most.min(rows).min(columns);
     let at = |k: usize, points: usize| (2 * k + 1) * points / (2 * count);
     let letter = |value: T| LETTERS.as_bytes()[level(value).round().clamp(0.0, 63.0) as usize] as char;
-    (0..count).flat_map(|i| (0..count).map(move |j| (i, j))).map(|(i, j)| letter(of[[at(i, rows), at(j, columns)]])).collect()
+    (0..count)
+        .flat_map(|i| (0..count).map(move |j| (i, j)))
+        .map(|(i, j)| letter(of[[at(i, rows), at(j, columns)]]))
+        .collect()
 }
 
 /// The heights from the lowest to the highest. Measured surfaces may lack points.
 pub(super) fn ground(heights_m: ArrayView2<'_, f64>) -> String {
     let known = heights_m.iter().copied().filter(|height| height.is_finite());
-    let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)));
+    let (low, high) =
+        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)));
     cells(heights_m, GROUND, |height| 63.0 * (height - low) / (high - low))
 }
 
-/// Adds the stored maps of boundary elements to the loops: place of the step, pressure and gap with their ranges. Levels follow the square root.
+/// Adds the stored maps of boundary elements to the loops: place of the step, pressure and gap with their
+/// ranges. Levels follow the square root.
 pub(super) fn stored_maps(path: &Path, loops: &mut Value) -> Result<(), StageError> {
     if !path.is_file() {
         return Ok(());

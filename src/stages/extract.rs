@@ -37,7 +37,9 @@ fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErro
     let (header, heights) = read_surface(&campaign.surface_path(unit))?;
     let Examined { found, edge_count, estimates } = match &unit.params {
         SurfaceSource::Measured(_) => Examined::of_measured(&header, heights.view())?,
-        SurfaceSource::Generated(of) => Examined::of_generated(of, &seed(campaign, unit), &header, heights.view())?,
+        SurfaceSource::Generated(of) => {
+            Examined::of_generated(of, &seed(campaign, unit), &header, heights.view())?
+        }
     };
     let frame = table(unit, &found.list)?;
     let mut keys = vec![
@@ -81,7 +83,8 @@ fn table(unit: &SurfaceUnit, list: &[Summit]) -> Result<Frame, FrameError> {
 pub(super) fn read_summits(path: &Path) -> Result<Vec<Summit>, StageError> {
     let frame = parquet::read_table(path, &schema::ASPERITIES)?;
     let [x, y, height, curvature, least, most] =
-        ["x_m", "y_m", "height_m", "curvature_1_m", "curvature_min_1_m", "curvature_max_1_m"].map(|name| frame.f64(name));
+        ["x_m", "y_m", "height_m", "curvature_1_m", "curvature_min_1_m", "curvature_max_1_m"]
+            .map(|name| frame.f64(name));
     let (x, y, height, curvature, least, most) = (x?, y?, height?, curvature?, least?, most?);
     let (rows, columns, refined) = (frame.i64("grid_row")?, frame.i64("grid_col")?, frame.bool("refined")?);
     Ok((0..frame.row_count())

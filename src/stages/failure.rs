@@ -29,7 +29,8 @@ pub(super) fn fenced<T>(task: impl FnOnce() -> Result<T, StageError>) -> Result<
     caught(task, |panic| StageError::Defect { what: panic.to_owned() })
 }
 
-/// Refuses a task whose files cannot be put in place, before it is computed: a folder has the name of one, or a file that of their folder.
+/// Refuses a task whose files cannot be put in place, before it is computed: a folder has the name of one, or
+/// a file that of their folder.
 pub(super) fn in_the_way(campaign: &Campaign, task: &Unit<'_>) -> Result<(), StageError> {
     let file = |folder: &str, ending: &str| campaign.dir.join(folder).join(format!("{}.{ending}", task.id));
     let mut files = vec![campaign.receipt_path(task)];
@@ -41,12 +42,12 @@ pub(super) fn in_the_way(campaign: &Campaign, task: &Unit<'_>) -> Result<(), Sta
             if std::fs::symlink_metadata(&folder).is_ok() && !folder.is_dir() {
                 return Err(StageError::InTheWay { path: folder, what: "a file" });
             }
-            let inside = std::fs::read_dir(&folder).map(|all| all.flatten().map(|entry| entry.path()).collect::<Vec<PathBuf>>());
+            let inside = std::fs::read_dir(&folder)
+                .map(|all| all.flatten().map(|entry| entry.path()).collect::<Vec<PathBuf>>());
             files.extend(
-                inside
-                    .unwrap_or_default()
-                    .into_iter()
-                    .filter(|path| path.extension().is_some_and(|e| e == "parquet" || e == "h5" || e == "bin")),
+                inside.unwrap_or_default().into_iter().filter(|path| {
+                    path.extension().is_some_and(|e| e == "parquet" || e == "h5" || e == "bin")
+                }),
             );
         }
         Stage::Aggregate | Stage::Report => {}
@@ -71,15 +72,17 @@ pub(super) fn report(
     watch.notice(&format!("{id} failed: {error}"));
     for cycle in cycles {
         match record(campaign, cycle, stage, error) {
-            Err(why @ StageError::InTheWay { .. }) => watch.notice(&format!("{}: cannot record the failure: {why}", cycle.id)),
+            Err(why @ StageError::InTheWay { .. }) => {
+                watch.notice(&format!("{}: cannot record the failure: {why}", cycle.id));
+            }
             recorded => recorded?,
         }
     }
     Ok(())
 }
 
-/// Records that a cycle failed, at which stage and why, with the estimates of its surface and material. Of a folder in the way it also records the place, since
-/// without the folder nothing has failed.
+/// Records that a cycle failed, at which stage and why, with the estimates of its surface and material. Of a
+/// folder in the way it also records the place, since without the folder nothing has failed.
 fn record(campaign: &Campaign, unit: &CycleUnit, stage: Stage, error: &StageError) -> Result<(), StageError> {
     in_the_way(campaign, &unit.cycle()).or_else(|why| match &why {
         StageError::InTheWay { path, .. } if *path != campaign.cycle_dir(unit) => Ok(()),
@@ -90,10 +93,13 @@ fn record(campaign: &Campaign, unit: &CycleUnit, stage: Stage, error: &StageErro
         return Err(StageError::InTheWay { path: file, what: "a folder" });
     }
     let again = format!("hysteron retry {} {}", shell_path(&campaign.dir), unit.id);
-    let mut record = json!({ "key": unit.key, "stage": stage.word(), "error": error.to_string(), "again": again });
+    let mut record =
+        json!({ "key": unit.key, "stage": stage.word(), "error": error.to_string(), "again": again });
     // As text, which is read without rounding.
-    record["estimates"] =
-        of_failed(campaign, unit).into_iter().map(|(name, value)| (name.to_owned(), Value::from(value.to_string()))).collect();
+    record["estimates"] = of_failed(campaign, unit)
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), Value::from(value.to_string())))
+        .collect();
     if let StageError::InTheWay { path, .. } = error {
         let place: &Path = path.strip_prefix(&campaign.dir).unwrap_or(path);
         record["in_the_way"] = place.to_string_lossy().into();
@@ -113,8 +119,14 @@ pub(super) fn by_surface(campaign: &Campaign) -> HashMap<&str, Vec<&CycleUnit>> 
     found
 }
 
-/// True if a stage is not tried for a surface: for all of its `cycles` it failed before and is not to be `retried`, or an earlier one did.
-pub(super) fn given_up(campaign: &Campaign, cycles: &[&CycleUnit], stage: Stage, retried: &HashSet<String>) -> bool {
+/// True if a stage is not tried for a surface: for all of its
+/// `cycles` it failed before and is not to be `retried`, or an earlier one did.
+pub(super) fn given_up(
+    campaign: &Campaign,
+    cycles: &[&CycleUnit],
+    stage: Stage,
+    retried: &HashSet<String>,
+) -> bool {
     let failed = |cycle: &&CycleUnit| match campaign.failed_at(cycle) {
         Some(at) if at == stage => !retried.contains(&cycle.id),
         Some(at) => at < stage,
@@ -139,7 +151,11 @@ mod tests {
         let outcome = fenced(|| -> Result<(), StageError> { panic!("no such column {}", 3) });
         assert!(outcome.as_ref().is_err_and(is_of_a_case));
         let text = outcome.map_err(|error| error.to_string());
-        assert_eq!(text, Err("internal error: no such column 3\nhelp: report this with the spec; the other tasks go on".to_owned()));
+        assert_eq!(
+            text,
+            Err("internal error: no such column 3\nhelp: report this with the spec; the other tasks go on"
+                .to_owned())
+        );
         assert!(fenced(|| Ok(2)).is_ok_and(|value| value == 2));
     }
 }

@@ -40,19 +40,25 @@ fn import(campaign: &Campaign, unit: &SurfaceUnit, surface: &MeasuredSurface) ->
     let path = &whole(Path::new(&surface.file));
     let refuse = |why: String| StageError::Changed { path: path.clone(), why };
     let lost = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => StageError::Lost { path: path.clone(), places: campaign.places_of(&surface.file) },
+        std::io::ErrorKind::NotFound => {
+            StageError::Lost { path: path.clone(), places: campaign.places_of(&surface.file) }
+        }
         _ => refuse(error.to_string()),
     };
     // A file in an unknown format may be too large to be hashed for nothing.
-    recognize(path).map_err(lost)?.map_err(|refusal| StageError::Measured { path: path.clone(), why: refusal.to_string() })?;
+    recognize(path)
+        .map_err(lost)?
+        .map_err(|refusal| StageError::Measured { path: path.clone(), why: refusal.to_string() })?;
     let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
     if campaign.spec.files.get(&surface.file) != Some(&digest) {
         return Err(refuse(
-            "the file differs from its checksum in [files] of the spec\nhelp: remove this line to recompute with the present file"
+            "the file differs from its checksum in [files] of the spec\nhelp: remove this line to recompute \
+             with the present file"
                 .to_owned(),
         ));
     }
-    let params = MeasuredSurface { file: path.to_str().unwrap_or(&surface.file).to_owned(), ..surface.clone() };
+    let params =
+        MeasuredSurface { file: path.to_str().unwrap_or(&surface.file).to_owned(), ..surface.clone() };
     let Imported { prepared, header, .. } = measure(&params, &digest, &unit.key)?;
     Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, prepared.heights_m.view())?]))
 }

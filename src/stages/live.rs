@@ -1,4 +1,5 @@
-//! State of a run in progress: a heartbeat for other processes, and the page `progress.html`, both rewritten again and again and removed at the end.
+//! State of a run in progress: a heartbeat for other processes, and the page `progress.html`, both rewritten
+//! again and again and removed at the end.
 
 use super::live_state::State;
 use super::{StageError, Task, Watch};
@@ -51,7 +52,10 @@ impl<'a> Live<'a> {
         let is_foreign = page.symlink_metadata().is_ok_and(|found| found.len() > 0) && !is_marked(&page);
         if state.has_page && is_foreign {
             state.has_page = false;
-            inner.notice(&format!("{} was not written by a run and is kept; this run has no page of progress", shown(&page)));
+            inner.notice(&format!(
+                "{} was not written by a run and is kept; this run has no page of progress",
+                shown(&page)
+            ));
         }
         // Before it is written, so that an interrupt removes it at any time.
         if state.has_page {
@@ -67,7 +71,10 @@ impl<'a> Live<'a> {
         shared.write(true);
         let of_thread = Arc::clone(&shared);
         // Without the thread, states are written when progress is reported.
-        let writer = std::thread::Builder::new().name("heartbeat".to_owned()).spawn(move || of_thread.write_until_the_end()).ok();
+        let writer = std::thread::Builder::new()
+            .name("heartbeat".to_owned())
+            .spawn(move || of_thread.write_until_the_end())
+            .ok();
         Self { inner, shared, writer }
     }
 
@@ -86,7 +93,8 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Shared {
-    /// Writes the heartbeat, and the page if it is due. The run does not depend on them: a disk that is full ends it elsewhere.
+    /// Writes the heartbeat, and the page if it is due. The run does not depend on them: a disk that is full
+    /// ends it elsewhere.
     fn write(&self, page_is_due: bool) {
         let (beat, page) = {
             let mut state = locked(&self.state);
@@ -103,7 +111,8 @@ impl Shared {
     fn write_until_the_end(&self) {
         let (mut over, mut beats) = (locked(&self.over), 0_u32);
         while !*over {
-            let (next, waited) = self.ended.wait_timeout(over, PERIOD).unwrap_or_else(PoisonError::into_inner);
+            let (next, waited) =
+                self.ended.wait_timeout(over, PERIOD).unwrap_or_else(PoisonError::into_inner);
             over = next;
             if waited.timed_out() && !*over {
                 beats = beats.wrapping_add(1);
@@ -181,7 +190,8 @@ fn loop_of(dir: &Path, id: &str) -> Result<LiveLoop, StageError> {
     let (penetration, load) = (steps.f64("penetration")?, steps.f64("load")?);
     let largest = of.iter().flatten().copied().reduce(f64::max);
     let path = |branch: &str, max_load: Option<f64>| -> Vec<(f64, f64)> {
-        let rows: Vec<usize> = (0..load.len()).filter(|row| branches[*row] == branch && of[*row] == max_load).collect();
+        let rows: Vec<usize> =
+            (0..load.len()).filter(|row| branches[*row] == branch && of[*row] == max_load).collect();
         let every = rows.len().div_ceil(MOST_POINTS).max(1);
         rows.into_iter().step_by(every).map(|row| (penetration[row], load[row])).collect()
     };

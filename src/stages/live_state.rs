@@ -68,7 +68,11 @@ impl State {
         Self {
             has_page: task.shard.is_whole() && task.from < task.until,
             is_named: false,
-            run: LiveRun { name: campaign.spec.name.clone(), dir: shell_path(&campaign.dir), ..LiveRun::default() },
+            run: LiveRun {
+                name: campaign.spec.name.clone(),
+                dir: shell_path(&campaign.dir),
+                ..LiveRun::default()
+            },
             beat: Heartbeat {
                 host: gethostname::gethostname().to_string_lossy().into_owned(),
                 process_id: std::process::id(),
@@ -151,7 +155,8 @@ impl State {
         if let Some(of) = self.run.stages.iter().find(|of| of.name == self.beat.stage) {
             (self.beat.done_count, self.beat.task_count) = (of.done, of.all);
             self.beat.fraction = of.fraction();
-            self.beat.left_s = left_s(self.stage_began.elapsed(), of.work - self.before, of.all as f64 - of.work);
+            self.beat.left_s =
+                left_s(self.stage_began.elapsed(), of.work - self.before, of.all as f64 - of.work);
         }
         self.beat.clone()
     }
@@ -161,7 +166,8 @@ impl State {
         self.run.updated.clone_from(&self.beat.updated);
         self.run.left_s = self.beat.left_s;
         self.run.elapsed_s = self.beat.elapsed_s;
-        let parameters = |task: &RunningTask| self.cycles.get(&task.id).map_or_else(String::new, |(_, text)| text.clone());
+        let parameters =
+            |task: &RunningTask| self.cycles.get(&task.id).map_or_else(String::new, |(_, text)| text.clone());
         self.run.running = self.beat.tasks.iter().map(|task| (task.clone(), parameters(task))).collect();
         &self.run
     }
@@ -170,7 +176,8 @@ impl State {
 impl Running {
     fn state(&self, cycles: &Cycles) -> RunningTask {
         let fraction = self.at.map_or(0.0, |at| at.done);
-        let left_s = self.first.and_then(|(since, from)| left_s(since.elapsed(), fraction - from, 1.0 - fraction));
+        let left_s =
+            self.first.and_then(|(since, from)| left_s(since.elapsed(), fraction - from, 1.0 - fraction));
         RunningTask {
             id: self.id.clone(),
             elapsed_s: self.began.elapsed().as_secs_f64(),

@@ -28,7 +28,8 @@ pub struct Imported {
     pub prepared: Prepared,
     /// Header of its file in a run.
     pub header: SurfaceHeader,
-    /// Factor from the numbers of the file to heights \[m\]; nothing for a surface of this program, which is in metres.
+    /// Factor from the numbers of the file to heights \[m\]; nothing for a surface of this program, which is
+    /// in metres.
     pub height_factor_m: Option<f64>,
     /// Sentences on how the file was read.
     pub notes: Vec<String>,
@@ -58,8 +59,10 @@ pub fn measure(params: &MeasuredSurface, digest: &str, key: &str) -> Result<Impo
     let spacing = spacing(params, &scan)?;
     let notes = notes(params, &scan);
     if let Some(apart) = spacing.iter().find(|apart| !PIXEL_SIZES.contains(apart)) {
-        let why =
-            format!("its points are {apart:e} m apart\nhelp: check the unit and the pixel size; a scan has points 1e-12 m to 0.1 m apart");
+        let why = format!(
+            "its points are {apart:e} m apart\nhelp: check the unit and the pixel size; a scan has points \
+             1e-12 m to 0.1 m apart"
+        );
         return Err(refused(Path::new(&params.file), &why));
     }
     agree(path, scan.periodic, params.periodic)?;
@@ -70,9 +73,13 @@ pub fn measure(params: &MeasuredSurface, digest: &str, key: &str) -> Result<Impo
         filter: params.filter,
         points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
     };
-    let (prepared, quality) = corrected(params, in_metres(path, scan.heights, unit)?, (spacing, scan.first), &treatment)?;
+    let (prepared, quality) =
+        corrected(params, in_metres(path, scan.heights, unit)?, (spacing, scan.first), &treatment)?;
     let measured = Measured {
-        source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
+        source: path
+            .file_name()
+            .map(|name| name.to_string_lossy().chars().take(60).collect())
+            .unwrap_or_default(),
         source_blake3: digest.to_owned(),
         source_point_counts: [rows as u64, columns as u64],
         source_spacings_m: spacing,
@@ -120,10 +127,14 @@ fn own(
     let of_rings = if header.periodic { periodogram } else { windowed_periodogram };
     let rings = of_rings(heights_m.view(), header.length_m)?;
     // A surface of this program that is not periodic has been imported, and its header holds the fit.
-    let fit = if header.periodic { fit_self_affine(&rings, header.length_m, Estimate::Periodogram) } else { None };
+    let fit =
+        if header.periodic { fit_self_affine(&rings, header.length_m, Estimate::Periodogram) } else { None };
     let texture = Texture::of(heights_m.view(), Edges::of(header.periodic))?;
     let measured = header.measured.clone().unwrap_or_else(|| Measured {
-        source: path.file_name().map(|name| name.to_string_lossy().chars().take(60).collect()).unwrap_or_default(),
+        source: path
+            .file_name()
+            .map(|name| name.to_string_lossy().chars().take(60).collect())
+            .unwrap_or_default(),
         source_blake3: digest.to_owned(),
         source_point_counts: [points as u64; 2],
         source_spacings_m: [spacing; 2],
@@ -151,12 +162,25 @@ fn own(
         overshoot_m: measured.overshoot_m,
         shortest_wavelength_m: measured.shortest_wavelength_m,
     };
-    Ok((prepared, SurfaceHeader { realization: 0, key: key.to_owned(), generated: None, measured: Some(measured), ..header }))
+    Ok((
+        prepared,
+        SurfaceHeader {
+            realization: 0,
+            key: key.to_owned(),
+            generated: None,
+            measured: Some(measured),
+            ..header
+        },
+    ))
 }
 
 /// Refuses corrections of a surface of this program, which is used as it is.
 fn uncorrected(params: &MeasuredSurface) -> Result<(), StageError> {
-    let asked = [(params.outliers, "outliers"), (params.align_rows, "align_rows"), (params.tip_radius_m > 0.0, "tip_radius_m")];
+    let asked = [
+        (params.outliers, "outliers"),
+        (params.align_rows, "align_rows"),
+        (params.tip_radius_m > 0.0, "tip_radius_m"),
+    ];
     let Some((_, name)) = asked.into_iter().find(|(is_set, _)| *is_set) else { return Ok(()) };
     let why = format!(
         "surface.{name} corrects a scan, and this is a surface that hysteron wrote, which is used as it is\n\
@@ -169,8 +193,10 @@ fn uncorrected(params: &MeasuredSurface) -> Result<(), StageError> {
 fn in_metres(path: &Path, mut heights: Array2<f64>, unit: f64) -> Result<Array2<f64>, StageError> {
     let too_large = heights.iter().find(|h| h.is_finite() && !(unit * **h).is_finite());
     if let Some(height) = too_large {
-        let why =
-            format!("heights too large: {height:e} in the unit {unit:e} m\nhelp: check the unit of the heights (--unit, surface.unit)");
+        let why = format!(
+            "heights too large: {height:e} in the unit {unit:e} m\nhelp: check the unit of the heights \
+             (--unit, surface.unit)"
+        );
         return Err(refused(path, &why));
     }
     heights *= unit;
@@ -182,11 +208,13 @@ fn agree(path: &Path, own: Option<bool>, given: bool) -> Result<(), StageError> 
     match own {
         Some(true) if !given => Err(refused(
             path,
-            "the file says that the surface is periodic, and periodic = false was given\nhelp: set surface.periodic = true in a spec, or --periodic on the command line",
+            "the file says that the surface is periodic, and periodic = false was given\nhelp: set \
+             surface.periodic = true in a spec, or --periodic on the command line",
         )),
         Some(false) if given => Err(refused(
             path,
-            "the file says that the surface is not periodic, and periodic = true was given\nhelp: leave out surface.periodic in a spec, or --periodic on the command line",
+            "the file says that the surface is not periodic, and periodic = true was given\nhelp: leave out \
+             surface.periodic in a spec, or --periodic on the command line",
         )),
         _ => Ok(()),
     }
@@ -227,7 +255,9 @@ fn complete(params: &MeasuredSurface, scan: &Scan) -> Result<(), StageError> {
     let (x, y) = scan.heights.dim();
     let twice = match (params.size_m > 0.0, params.pixel_m > 0.0) {
         (true, true) => Some(("size_m and pixel_m both state the pixel size", "remove one of them")),
-        (false, _) if params.size_y_m > 0.0 => Some(("size_y_m without size_m", "state size_m, the size along x")),
+        (false, _) if params.size_y_m > 0.0 => {
+            Some(("size_y_m without size_m", "state size_m, the size along x"))
+        }
         _ => None,
     };
     if let Some((problem, help)) = twice {
@@ -236,13 +266,21 @@ fn complete(params: &MeasuredSurface, scan: &Scan) -> Result<(), StageError> {
     let size = format!("--size (along x, for example 5um) or --pixel-m; {x} x {y} points");
     let (problem, help) = match (no_unit, no_size) {
         (false, false) => return Ok(()),
-        (true, false) => ("no unit of the heights in the file", "give the unit (--unit), for example \"nm\"".to_owned()),
-        (false, true) => ("no pixel size in the file", format!("give {size}")),
-        (true, true) => {
-            ("no unit of the heights in the file, and no pixel size", format!("give --unit (of the heights, for example nm), and {size}"))
+        (true, false) => {
+            ("no unit of the heights in the file", "give the unit (--unit), for example \"nm\"".to_owned())
         }
+        (false, true) => ("no pixel size in the file", format!("give {size}")),
+        (true, true) => (
+            "no unit of the heights in the file, and no pixel size",
+            format!("give --unit (of the heights, for example nm), and {size}"),
+        ),
     };
-    let notes: String = scan.notes.iter().filter(|note| note.starts_with("sizes: ")).map(|note| format!(" ({note})")).collect();
+    let notes: String = scan
+        .notes
+        .iter()
+        .filter(|note| note.starts_with("sizes: "))
+        .map(|note| format!(" ({note})"))
+        .collect();
     Err(refused(Path::new(&params.file), &format!("{problem}{notes}\nhelp: {help}")))
 }
 
@@ -262,12 +300,19 @@ fn spacing(params: &MeasuredSurface, scan: &Scan) -> Result<[f64; 2], StageError
     let path = Path::new(&params.file);
     let (x, y) = scan.heights.dim();
     let (key, option) = if params.size_m > 0.0 { ("size_m", "--size") } else { ("pixel_m", "--pixel-m") };
-    let differs = |own: [f64; 2], given: [f64; 2]| own.iter().zip(given).any(|(own, given)| (own / given - 1.0).abs() > SAME);
-    match (scan.size_m.map(|size| [size[0] / x as f64, size[1] / y as f64]), scan.spacing, stated(params, scan)) {
+    let differs = |own: [f64; 2], given: [f64; 2]| {
+        own.iter().zip(given).any(|(own, given)| (own / given - 1.0).abs() > SAME)
+    };
+    match (
+        scan.size_m.map(|size| [size[0] / x as f64, size[1] / y as f64]),
+        scan.spacing,
+        stated(params, scan),
+    ) {
         (Some([a, b]), _, Some(given)) if differs([a, b], given) => {
             let [c, d] = given;
             let why = format!(
-                "the pixel size is {a:.4e} m x {b:.4e} m in the file, but {c:.4e} m x {d:.4e} m by {key}\nhelp: remove {key} ({option})"
+                "the pixel size is {a:.4e} m x {b:.4e} m in the file, but {c:.4e} m x {d:.4e} m by \
+                 {key}\nhelp: remove {key} ({option})"
             );
             Err(refused(path, &why))
         }
@@ -282,7 +327,9 @@ fn spacing(params: &MeasuredSurface, scan: &Scan) -> Result<[f64; 2], StageError
         }
         (None, _, Some(given)) => Ok(given),
         // Without a unit of its own the file has one for all columns.
-        (None, Some(own), None) => metres(&params.unit).map(|unit| own.map(|spacing| unit * spacing)).ok_or_else(|| unitless(path)),
+        (None, Some(own), None) => {
+            metres(&params.unit).map(|unit| own.map(|spacing| unit * spacing)).ok_or_else(|| unitless(path))
+        }
         (None, None, None) => Err(unitless(path)),
     }
 }
@@ -294,12 +341,20 @@ fn unit(params: &MeasuredSurface, scan: &Scan) -> Result<f64, StageError> {
     match &scan.unit {
         Some(own) if !given.is_empty() && metres(given) != metres(own) => Err(refused(
             path,
-            &format!("the heights are in {own} in the file, but the unit {given:?} was given\nhelp: remove the unit (--unit)"),
+            &format!(
+                "the heights are in {own} in the file, but the unit {given:?} was given\nhelp: remove the \
+                 unit (--unit)"
+            ),
         )),
         Some(_) => Ok(1.0),
         None if given.is_empty() => Err(unitless(path)),
         None => metres(given).ok_or_else(|| {
-            refused(path, &format!("the unit of the heights {given:?} is not a unit of length\nhelp: use one of {LENGTHS}"))
+            refused(
+                path,
+                &format!(
+                    "the unit of the heights {given:?} is not a unit of length\nhelp: use one of {LENGTHS}"
+                ),
+            )
         }),
     }
 }
@@ -317,7 +372,11 @@ enum Source {
 /// The height field of a file, in whatever format it is.
 fn source(path: &Path, params: &MeasuredSurface) -> Result<Source, StageError> {
     let field = (!params.dataset.is_empty()).then_some(params.dataset.as_str());
-    let asked = Asked { field, skip_lines: u64::from(params.skip_lines), width: (params.width > 0).then_some(u64::from(params.width)) };
+    let asked = Asked {
+        field,
+        skip_lines: u64::from(params.skip_lines),
+        width: (params.width > 0).then_some(u64::from(params.width)),
+    };
     let found = recognize(path).map_err(|error| refused(path, &error.to_string()))?;
     let scan = match found.map_err(|refusal| refused(path, &refusal.to_string()))? {
         Found::Hdf5 if field.is_none() && is_own_surface(path) => {

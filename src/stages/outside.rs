@@ -21,11 +21,16 @@ impl Outside {
     /// Cases whose values are beyond the limit of a warning; nothing without any.
     pub(super) fn of(code: &str, values: impl Iterator<Item = (String, f64)>) -> Option<Self> {
         let (limit, kind) = (Limit::of(code)?, CAUTIONS.into_iter().find(|kind| kind.code == code)?);
-        let (cases, values): (Vec<String>, Vec<f64>) = values.filter(|(_, value)| limit.is_passed(Some(*value))).unzip();
+        let (cases, values): (Vec<String>, Vec<f64>) =
+            values.filter(|(_, value)| limit.is_passed(Some(*value))).unzip();
         let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
         let of_target = ["sticky", "conformed"].contains(&code);
         let measured = if of_target {
-            format!("{} (target spectrum or scan; limit ≥ {})", kind.text.replace("{}", &interval(range)), limit.bound)
+            format!(
+                "{} (target spectrum or scan; limit ≥ {})",
+                kind.text.replace("{}", &interval(range)),
+                limit.bound
+            )
         } else {
             measured_text(&kind, limit, &values)
         };

@@ -13,8 +13,8 @@ use crate::store::{Check, commit};
 /// Tallies of the stages, in their order.
 type Tallies = Vec<(Stage, Tally)>;
 
-/// Runs the stages of a task, in order. Failed units do not stop the others. If the spec requests a precision, realizations are added until it is reached;
-/// the returned campaign has all of them.
+/// Runs the stages of a task, in order. Failed units do not stop the others. If the spec requests a
+/// precision, realizations are added until it is reached; the returned campaign has all of them.
 ///
 /// # Errors
 /// A folder or file that cannot be written; for a single stage: missing inputs of that stage.
@@ -69,7 +69,11 @@ fn evaluate(context: Context<'_>, tallies: &mut Tallies) -> Result<(), StageErro
     // An earlier stage of this run has already read the files of the cycles.
     let cycles_check = if task.from <= Stage::Cycle { Check::Sizes } else { task.check };
     for stage in wanted(task, &[Stage::Aggregate, Stage::Report]) {
-        let tally = if stage == Stage::Aggregate { aggregate::run(context, cycles_check)? } else { report::run(context, cycles_check)? };
+        let tally = if stage == Stage::Aggregate {
+            aggregate::run(context, cycles_check)?
+        } else {
+            report::run(context, cycles_check)?
+        };
         tallies.push((stage, tally));
     }
     Ok(())
@@ -83,7 +87,8 @@ pub fn prepare(campaign: &Campaign) -> Result<(), StageError> {
     if let Some(path) = campaign.foreign_file() {
         return Err(StageError::Foreign { path });
     }
-    let folders = ["", "surfaces", "asperities", "estimates", "cycles", "statistics", "figures"].map(|name| campaign.dir.join(name));
+    let folders = ["", "surfaces", "asperities", "estimates", "cycles", "statistics", "figures"]
+        .map(|name| campaign.dir.join(name));
     for path in folders.into_iter().chain(Stage::ALL.map(|stage| campaign.receipts_dir(stage))) {
         std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;
     }

@@ -60,8 +60,8 @@ impl Preview {
     }
 
     fn read(header: SurfaceHeader, heights: &Array2<f64>, most_points: usize) -> Self {
-        let details =
-            (heights.nrows() <= most_points).then(|| Examined::of_measured(&header, heights.view()).map_err(|error| error.to_string()));
+        let details = (heights.nrows() <= most_points)
+            .then(|| Examined::of_measured(&header, heights.view()).map_err(|error| error.to_string()));
         Self::Known(Box::new(Known { header, details }))
     }
 

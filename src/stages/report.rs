@@ -27,7 +27,8 @@ struct Statistics {
 
 impl Statistics {
     fn read(campaign: &Campaign) -> Result<Self, StageError> {
-        let read = |table: &'static schema::Table| parquet::read_table(&campaign.statistics_path(table.name), table);
+        let read =
+            |table: &'static schema::Table| parquet::read_table(&campaign.statistics_path(table.name), table);
         Ok(Self {
             cases: read(&schema::CASES)?,
             curves: read(&schema::CURVES)?,
@@ -57,7 +58,10 @@ impl Drawings {
         Ok(Self {
             panels: drawn,
             cycles: look(campaign, standings, cases)?,
-            methods: MethodFigures { ratios: method_ratios(methods)?, maps: contact_maps(campaign, standings, methods)? },
+            methods: MethodFigures {
+                ratios: method_ratios(methods)?,
+                maps: contact_maps(campaign, standings, methods)?,
+            },
             sensitivity: sensitivity(cases, realizations)?,
         })
     }
@@ -66,14 +70,18 @@ impl Drawings {
     fn figures(&self) -> impl Iterator<Item = (&str, &str)> {
         let cycle = self.cycles.iter().flat_map(|cycle| &cycle.panels);
         let map = self.cycles.iter().filter_map(|cycle| cycle.map.as_ref());
-        let others = map.chain(&self.methods.maps).chain(&self.sensitivity).map(|drawing| (drawing.stem, drawing.svg.as_str()));
+        let others = map
+            .chain(&self.methods.maps)
+            .chain(&self.sensitivity)
+            .map(|drawing| (drawing.stem, drawing.svg.as_str()));
         let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle);
         panels.map(drawing).chain(others).chain(self.methods.ratios.as_ref().map(drawing))
     }
 
     /// All panels with the names of their sweeps; those of the single cycle have none.
     fn all_panels(&self) -> Vec<(String, Panel)> {
-        let cycle = self.cycles.iter().flat_map(|cycle| &cycle.panels).map(|panel| (String::new(), panel.clone()));
+        let cycle =
+            self.cycles.iter().flat_map(|cycle| &cycle.panels).map(|panel| (String::new(), panel.clone()));
         self.panels.iter().cloned().chain(cycle).collect()
     }
 }
@@ -85,9 +93,14 @@ pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, St
     let standings = campaign.cycle_standings(cycles_check);
     let statistics = campaign.statistics_key(&standings);
     let key = campaign.report_key(&statistics);
-    let single = Single { unit: Unit { stage: Stage::Report, id: REPORT_PAGE, key: &key }, name: "report.html", clock };
+    let single = Single {
+        unit: Unit { stage: Stage::Report, id: REPORT_PAGE, key: &key },
+        name: "report.html",
+        clock,
+    };
     let ready = || {
-        let standing = campaign.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics }, check);
+        let standing =
+            campaign.standing(&Unit { stage: Stage::Aggregate, id: STATISTICS, key: &statistics }, check);
         incomplete(campaign, Stage::Report, &[("statistics".to_owned(), standing)])
     };
     let compute = || Ok((write(campaign, &standings, &key)?, campaign.report_preimages(&statistics)));
@@ -117,7 +130,11 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Outco
     }
     let page = page((campaign, standings), key, &statistics, &drawings)?;
     let panels = table(&drawings.all_panels())?;
-    files.push(parquet::write_table(&campaign.statistics_path("panels"), &panels, &[("key", key.to_owned())])?);
+    files.push(parquet::write_table(
+        &campaign.statistics_path("panels"),
+        &panels,
+        &[("key", key.to_owned())],
+    )?);
     files.push(commit::commit_bytes("write the report", &campaign.dir.join("report.html"), page.as_bytes())?);
     Ok(Outcome { files, effort: earlier })
 }
@@ -162,7 +179,10 @@ fn failures(campaign: &Campaign, standings: &[Standing]) -> Vec<Failure> {
     let mut found: Vec<Failure> = Vec::new();
     let mut seen = HashSet::new();
     for (unit, standing) in campaign.cycles.iter().zip(standings) {
-        let Some([problem, help]) = campaign.failure_texts(unit, standing).filter(|_| seen.insert(&unit.key)) else { continue };
+        let Some([problem, help]) = campaign.failure_texts(unit, standing).filter(|_| seen.insert(&unit.key))
+        else {
+            continue;
+        };
         // Reasons that differ in their numbers alone are one.
         match found.iter_mut().find(|of| of.help == help && words(&of.problem) == words(&problem)) {
             Some(of) => of.count += 1,
@@ -182,7 +202,8 @@ fn scans(campaign: &Campaign) -> Result<Vec<SurfaceHeader>, StageError> {
 
 /// A figure in its formats: places below the folder of the report, and contents.
 pub(super) fn pictures(stem: &str, svg: &str, files: &Figures) -> Result<Vec<(String, Vec<u8>)>, StageError> {
-    let one = |format| Ok((format!("figures/{stem}.{format}"), file(format, svg, files.width_mm, &files.font)?));
+    let one =
+        |format| Ok((format!("figures/{stem}.{format}"), file(format, svg, files.width_mm, &files.font)?));
     files.written().into_iter().map(one).collect()
 }
 

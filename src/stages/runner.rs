@@ -61,8 +61,8 @@ pub(super) trait Tasks: Sync {
     fn clean_up(&self, of: &Self::Of);
 }
 
-/// Computes the tasks of a stage that are not done, in parallel. Tasks that fail by an error of their own are recorded and counted; another error ends the stage
-/// when all tasks have been tried.
+/// Computes the tasks of a stage that are not done, in parallel. Tasks that fail by an error of their own are
+/// recorded and counted; another error ends the stage when all tasks have been tried.
 pub(super) fn run_stage<T: Tasks>(tasks: &T, context: Context<'_>) -> Result<Tally, StageError> {
     let selected = tasks.selected();
     let planned = selected.len();
@@ -82,10 +82,17 @@ fn due<'a, T: Tasks>(tasks: &T, selected: Vec<&'a T::Of>, watch: &dyn Watch) -> 
     let standings: Vec<Standing> = selected.par_iter().map(|of| tasks.standing(of)).collect();
     let open = selected.into_iter().zip(standings).filter(|(_, standing)| *standing != Standing::Done);
     open.inspect(|(of, standing)| match standing {
-        Standing::Missing(why) | Standing::Corrupt(why) => watch.notice(&format!("{}: {why}; recomputing", tasks.unit(of).id)),
+        Standing::Missing(why) | Standing::Corrupt(why) => {
+            watch.notice(&format!("{}: {why}; recomputing", tasks.unit(of).id));
+        }
         Standing::Stale => watch.notice(&format!("{} has other parameters; recomputing", tasks.unit(of).id)),
         // The status of tasks in other processes is that of their files.
-        Standing::Done | Standing::Running | Standing::Waiting | Standing::Planned | Standing::Interrupted | Standing::Failed(_) => {}
+        Standing::Done
+        | Standing::Running
+        | Standing::Waiting
+        | Standing::Planned
+        | Standing::Interrupted
+        | Standing::Failed(_) => {}
     })
     .collect()
 }
@@ -98,7 +105,11 @@ fn require<T: Tasks>(tasks: &T, open: &[&T::Of], campaign: &Campaign) -> Result<
 
 /// Computes tasks in parallel, in their order, and writes the provenance record of each; `planned` includes
 /// finished tasks.
-fn compute<T: Tasks>(tasks: &T, open: &[&T::Of], (context, planned): (Context<'_>, usize)) -> Result<Tally, StageError> {
+fn compute<T: Tasks>(
+    tasks: &T,
+    open: &[&T::Of],
+    (context, planned): (Context<'_>, usize),
+) -> Result<Tally, StageError> {
     let Context { campaign, watch, .. } = context;
     let before = planned - open.len();
     watch.begin(T::STAGE, before, planned);
@@ -115,7 +126,8 @@ fn compute<T: Tasks>(tasks: &T, open: &[&T::Of], (context, planned): (Context<'_
         watch.finished(T::STAGE, unit.id);
         Ok(())
     };
-    // A bridge distributes the tasks one by one, in their order; halves of a list would leave half of the longest ones to the end.
+    // A bridge distributes the tasks one by one, in their order; halves of a list would leave half of the
+    // longest ones to the end.
     let outcomes: Vec<Result<(), StageError>> = open.iter().par_bridge().map(|of| one(of)).collect();
     watch.end(T::STAGE);
     let mut tally = Tally { planned, before, ..Tally::default() };

@@ -16,10 +16,12 @@ use rayon::prelude::*;
 /// Results of one realization of a case at each load reversal; nothing if it failed.
 type Outcome = Option<Vec<f64>>;
 
-/// Number of realizations of a case, of which `outcomes` are known: those, if its means are precise enough, or the maximum is reached.
+/// Number of realizations of a case, of which `outcomes` are known: those, if its means are precise enough,
+/// or the maximum is reached.
 ///
-/// Half the 95 % interval falls as `1/√n`, so from its present share `h` of the mean `n (h/wanted)²` are expected to be enough; no more than twice as many as
-/// there are, since a spread of few is known badly. Where half of them failed, more would fail, and none is added.
+/// Half the 95 % interval falls as `1/√n`, so from its present share `h` of the mean `n (h/wanted)²` are
+/// expected to be enough; no more than twice as many as there are, since a spread of few is known badly.
+/// Where half of them failed, more would fail, and none is added.
 fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
     let now = outcomes.len() as u32;
     let done: Vec<&Vec<f64>> = outcomes.iter().flatten().collect();
@@ -28,7 +30,8 @@ fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
     }
     let loads = done.first().map_or(0, |values| values.len());
     let shares = (0..loads).map(|load| {
-        let sample = Sample::of(&done.iter().filter_map(|values| values.get(load).copied()).collect::<Vec<f64>>());
+        let sample =
+            Sample::of(&done.iter().filter_map(|values| values.get(load).copied()).collect::<Vec<f64>>());
         match (sample.mean, sample.ci95) {
             (Some(mean), Some(half)) if mean != 0.0 => half / mean.abs(),
             // All results are zero, as without adhesion: exactly known.
@@ -54,8 +57,10 @@ pub fn sampled(campaign: Campaign) -> Result<Campaign, StageError> {
     let mut campaign = campaign;
     loop {
         let standings = campaign.cycle_standings(Check::Sizes);
-        let counts: Vec<u32> =
-            (0..campaign.cases.len()).into_par_iter().map(|case| count(&campaign, case, &standings, &until)).collect::<Result<_, _>>()?;
+        let counts: Vec<u32> = (0..campaign.cases.len())
+            .into_par_iter()
+            .map(|case| count(&campaign, case, &standings, &until))
+            .collect::<Result<_, _>>()?;
         if counts == campaign.counts {
             return Ok(campaign);
         }

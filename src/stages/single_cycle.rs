@@ -18,7 +18,8 @@ use crate::store::parquet::read_table;
 use crate::store::{Frame, read_loop_maps};
 use std::f64::consts::TAU;
 
-/// Maximum number of points along a side. For larger surfaces this section would need more memory than the cycle.
+/// Maximum number of points along a side. For larger surfaces this section would need more memory than the
+/// cycle.
 const GREATEST: u64 = 8192;
 
 /// Points of a curve of a theory.
@@ -32,33 +33,52 @@ struct Chosen<'a> {
     has_larger: bool,
 }
 
-/// The first finished cycle of the case by a method with the largest mean Θ, at that load reversal; `None` without one that `fits`.
+/// The first finished cycle of the case by a method with the largest mean Θ, at that load reversal;
+/// `None` without one that `fits`.
 fn choose<'a>(
     (campaign, standings): (&'a Campaign, &[Standing]),
     cases: &Frame,
     method: Method,
     fits: impl Fn(&CycleUnit) -> bool,
 ) -> Result<Option<Chosen<'a>>, StageError> {
-    let done = || campaign.cycles.iter().zip(standings).filter(|(_, standing)| **standing == Standing::Done).map(|(unit, _)| unit);
-    let (ids, loads, losses) = (cases.text("case_id")?, cases.f64("max_load")?, cases.f64_or_null("loss_mean")?);
+    let done = || {
+        campaign
+            .cycles
+            .iter()
+            .zip(standings)
+            .filter(|(_, standing)| **standing == Standing::Done)
+            .map(|(unit, _)| unit)
+    };
+    let (ids, loads, losses) =
+        (cases.text("case_id")?, cases.f64("max_load")?, cases.f64_or_null("loss_mean")?);
     let methods = cases.text("method")?;
-    let mut rows: Vec<(usize, f64)> = losses.iter().enumerate().filter_map(|(row, loss)| loss.map(|loss| (row, loss))).collect();
+    let mut rows: Vec<(usize, f64)> =
+        losses.iter().enumerate().filter_map(|(row, loss)| loss.map(|loss| (row, loss))).collect();
     rows.retain(|(row, _)| methods[*row] == method.word());
     // Of equal means, the first row.
     rows.sort_by(|u, v| v.1.total_cmp(&u.1));
     let first = |row: usize| done().find(|unit| campaign.cases[unit.case].id == ids[row] && fits(unit));
-    let found = rows.iter().enumerate().find_map(|(place, (row, _))| first(*row).map(|unit| (place, *row, unit)));
+    let found =
+        rows.iter().enumerate().find_map(|(place, (row, _))| first(*row).map(|unit| (place, *row, unit)));
     Ok(found.map(|(place, row, unit)| Chosen { unit, max_load: loads[row], has_larger: place > 0 }))
 }
 
 /// The cycles of the report: by boundary elements, then by the asperity model.
-pub(super) fn look(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Vec<SingleCycle>, StageError> {
+pub(super) fn look(
+    campaign: &Campaign,
+    standings: &[Standing],
+    cases: &Frame,
+) -> Result<Vec<SingleCycle>, StageError> {
     let elements = of_elements(campaign, standings, cases)?;
     Ok(elements.into_iter().chain(of_asperities(campaign, standings, cases)?).collect())
 }
 
 /// Loop and contact of the case by boundary elements with the largest mean Θ.
-fn of_elements(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<SingleCycle>, StageError> {
+fn of_elements(
+    campaign: &Campaign,
+    standings: &[Standing],
+    cases: &Frame,
+) -> Result<Option<SingleCycle>, StageError> {
     let chosen = choose((campaign, standings), cases, Method::BoundaryElements, |_| true)?;
     let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
     let case = &campaign.cases[unit.case].case.params;
@@ -66,20 +86,31 @@ fn of_elements(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Re
     let folder = campaign.cycle_dir(unit);
     let steps = read_table(&folder.join(format!("{}.parquet", schema::STEPS.name)), &schema::STEPS)?;
     let maps = read_loop_maps(&folder.join("maps.h5"), max_load)?;
-    let (panel, map) = elements_loop(&ElementsLoop { max_load, parameters: &parameters, steps: &steps, maps: maps.as_ref() })?;
+    let (panel, map) = elements_loop(&ElementsLoop {
+        max_load,
+        parameters: &parameters,
+        steps: &steps,
+        maps: maps.as_ref(),
+    })?;
     Ok(Some(SingleCycle {
         id: unit.id.clone(),
         realization: campaign.surfaces[unit.surface].realization,
         choice: choice(Some(Method::BoundaryElements), has_larger),
-        files: "The table `events` of the cycle holds all events, the table `contacts` the regions of contact, the file `maps.h5` gap and pressure.",
+        files: "The table `events` of the cycle holds all events, the table `contacts` the regions of \
+             contact, the file `maps.h5` gap and pressure.",
         parameters,
         panels: vec![panel],
         map,
     }))
 }
 
-/// The case of the asperity model with the largest mean Θ; `None` without a finished cycle, or if all surfaces are too large.
-fn of_asperities(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> Result<Option<SingleCycle>, StageError> {
+/// The case of the asperity model with the largest mean Θ; `None` without a finished cycle, or if all
+/// surfaces are too large.
+fn of_asperities(
+    campaign: &Campaign,
+    standings: &[Standing],
+    cases: &Frame,
+) -> Result<Option<SingleCycle>, StageError> {
     let grid = |surface: &GeneratedSurface| surface.grid() <= GREATEST;
     let fits = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.generated().is_none_or(grid);
     let chosen = choose((campaign, standings), cases, Method::Asperities, fits)?;
@@ -91,8 +122,11 @@ fn of_asperities(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> 
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
-    let table = |table: &'static schema::Table| read_table(&campaign.cycle_dir(unit).join(format!("{}.parquet", table.name)), table);
-    let (steps, events, contacts) = (table(&schema::STEPS)?, table(&schema::EVENTS)?, table(&schema::CONTACTS)?);
+    let table = |table: &'static schema::Table| {
+        read_table(&campaign.cycle_dir(unit).join(format!("{}.parquet", table.name)), table)
+    };
+    let (steps, events, contacts) =
+        (table(&schema::STEPS)?, table(&schema::EVENTS)?, table(&schema::CONTACTS)?);
     let (realised, scale) = (header.moments(), scale(campaign, surface)?);
     let (lowest, variance) = (TAU / header.length_m, header.rms_height_m.powi(2));
     let spectrum_of = if header.periodic { periodogram } else { windowed_periodogram };
@@ -102,7 +136,8 @@ fn of_asperities(campaign: &Campaign, standings: &[Standing], cases: &Frame) -> 
         .filter(|ring| ring.wavenumber_1_m < highest * lowest)
         .map(|ring| (ring.wavenumber_1_m / lowest, ring.density_m4 * lowest * lowest / variance))
         .collect();
-    let nayak: Vec<(f64, f64)> = (0..=POINTS).map(|k| 8.0 * k as f64 / POINTS as f64).map(|t| (t, curvature_density(-t))).collect();
+    let nayak: Vec<(f64, f64)> =
+        (0..=POINTS).map(|k| 8.0 * k as f64 / POINTS as f64).map(|t| (t, curvature_density(-t))).collect();
     let area = header.length_m * header.length_m;
     let target = target(case);
     let of = Closer {
@@ -138,7 +173,11 @@ fn choice(method: Option<Method>, has_larger: bool) -> String {
         Some(Method::Asperities) => " by the asperity model",
         Some(Method::Auto) | None => "",
     };
-    let size = if has_larger { format!(" on surfaces of at most {GREATEST} × {GREATEST} points") } else { String::new() };
+    let size = if has_larger {
+        format!(" on surfaces of at most {GREATEST} × {GREATEST} points")
+    } else {
+        String::new()
+    };
     format!("The case{method} with the largest mean Θ/(E*A_{{0}}h_{{rms}}){size}")
 }
 
@@ -146,7 +185,10 @@ fn choice(method: Option<Method>, has_larger: bool) -> String {
 pub(super) fn parameters(case: &CaseParams, file: Option<&str>, max_load: f64) -> String {
     let material = &case.material;
     let with_unit = |symbol: &str, column: &str, value: f64| {
-        labels_with_unit(column, &[value]).into_iter().map(|text| format!("{symbol} = {text}")).collect::<String>()
+        labels_with_unit(column, &[value])
+            .into_iter()
+            .map(|text| format!("{symbol} = {text}"))
+            .collect::<String>()
     };
     let mut parts = match &case.surface {
         SurfaceSource::Measured(_) => vec![file.unwrap_or_default().to_owned()],
@@ -161,7 +203,11 @@ pub(super) fn parameters(case: &CaseParams, file: Option<&str>, max_load: f64) -
     parts.push(with_unit("Δγ", "work_of_adhesion_j_m2", material.work_of_adhesion_j_m2));
     let choices = match &case.method {
         MethodOptions::Asperities(model) => {
-            vec![("interaction", model.interaction.word()), ("boundary", model.boundary.word()), ("coalescence", model.coalescence.word())]
+            vec![
+                ("interaction", model.interaction.word()),
+                ("boundary", model.boundary.word()),
+                ("coalescence", model.coalescence.word()),
+            ]
         }
         method => vec![("method", method.kind().word())],
     };
@@ -170,18 +216,24 @@ pub(super) fn parameters(case: &CaseParams, file: Option<&str>, max_load: f64) -
     parts.join(", ")
 }
 
-/// The wavenumber q/qL up to which rings of the spectrum have all their modes below the cut-off: the mean of a ring that it divides has modes without amplitude.
+/// The wavenumber q/qL up to which rings of the spectrum have all their modes below the cut-off: the mean of
+/// a ring that it divides has modes without amplitude.
 fn highest_whole_ring(header: &SurfaceHeader) -> f64 {
     match &header.measured {
-        Some(measured) if measured.shortest_wavelength_m > 0.0 => header.length_m / measured.shortest_wavelength_m,
+        Some(measured) if measured.shortest_wavelength_m > 0.0 => {
+            header.length_m / measured.shortest_wavelength_m
+        }
         Some(_) => f64::INFINITY,
         // Ring j has the modes from 2^((j - 1/2)/4) to 2^((j + 1/2)/4), four rings to a doubling.
-        None => (((4.0 * header.generated.as_ref().map_or(1.0, |of| of.magnification).log2() - 0.5).floor() + 0.5) / 4.0).exp2(),
+        None => (((4.0 * header.generated.as_ref().map_or(1.0, |of| of.magnification).log2() - 0.5).floor()
+            + 0.5)
+            / 4.0)
+            .exp2(),
     }
 }
 
-/// A target spectrum at the realised rms height: `C qL²/h_rms²` over q/qL, from the longest to the shortest waves, such that the
-/// sum over the lattice of modes is 1, as it is for the surface.
+/// A target spectrum at the realised rms height: `C qL²/h_rms²` over q/qL, from the longest to the shortest
+/// waves, such that the sum over the lattice of modes is 1, as it is for the surface.
 fn asked(target: &Spectrum) -> Vec<(f64, f64)> {
     // `C qL²` of Eq 10 at qL [m²].
     let unit = target.prefactor() * target.lowest_wavenumber().powi(2) / eq10_variance(target);

@@ -69,7 +69,13 @@ impl<S: SurfaceStage> Tasks for Surfaces<'_, S> {
 
     fn selected(&self) -> Vec<&SurfaceUnit> {
         let Context { campaign, task, .. } = self.context;
-        campaign.surfaces.iter().enumerate().filter(|(place, _)| task.shard.holds(*place)).map(|(_, unit)| unit).collect()
+        campaign
+            .surfaces
+            .iter()
+            .enumerate()
+            .filter(|(place, _)| task.shard.holds(*place))
+            .map(|(_, unit)| unit)
+            .collect()
     }
 
     fn unit<'a>(&self, of: &'a SurfaceUnit) -> Unit<'a> {

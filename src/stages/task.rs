@@ -73,6 +73,13 @@ impl Task {
     /// These stages, of everything.
     #[must_use]
     pub fn new(from: Stage, until: Stage) -> Self {
-        Self { from, until, shard: Shard::default(), partial: false, check: Check::Contents, retried: HashSet::new() }
+        Self {
+            from,
+            until,
+            shard: Shard::default(),
+            partial: false,
+            check: Check::Contents,
+            retried: HashSet::new(),
+        }
     }
 }

@@ -41,7 +41,11 @@ pub(super) type Previews = HashMap<usize, Preview>;
 /// All measured surfaces of a campaign, read once.
 pub(super) fn previews(campaign: &Campaign) -> Previews {
     let surfaces = campaign.surfaces.iter().enumerate();
-    surfaces.filter_map(|(place, surface)| Some((place, Preview::of(campaign, surface, surface.params.measured()?)))).collect()
+    surfaces
+        .filter_map(|(place, surface)| {
+            Some((place, Preview::of(campaign, surface, surface.params.measured()?)))
+        })
+        .collect()
 }
 
 /// The verdicts on all cases.
@@ -57,8 +61,11 @@ pub(super) fn verdicts(campaign: &Campaign, previews: &Previews) -> Vec<Verdict>
             let standing = cycle.map(|cycle| campaign.cycle_standing(cycle, Check::Sizes));
             !matches!(standing, Some(Standing::Done | Standing::Failed(_)))
         };
-        let of_generated = || cycle.filter(|_| preview.is_none()).and_then(|cycle| trial.error(campaign, unit, cycle));
-        let error = Some(()).filter(|()| is_open()).and_then(|()| error(&unit.case.params, preview).or_else(of_generated));
+        let of_generated =
+            || cycle.filter(|_| preview.is_none()).and_then(|cycle| trial.error(campaign, unit, cycle));
+        let error = Some(())
+            .filter(|()| is_open())
+            .and_then(|()| error(&unit.case.params, preview).or_else(of_generated));
         Verdict { error, ..verdict(unit, preview.and_then(Preview::known)) }
     };
     campaign.cases.iter().zip(surfaces).map(of).collect()
@@ -69,16 +76,20 @@ fn verdict(unit: &CaseUnit, known: Option<&Known>) -> Verdict {
     let params = &unit.case.params;
     let adhesion = params.material.work_of_adhesion_j_m2;
     let energies = energies(params, known);
-    let ratio = |of: fn(&Flattening, f64) -> f64| energies.as_ref().filter(|_| adhesion > 0.0).map(|(energy, _)| of(energy, adhesion));
+    let ratio = |of: fn(&Flattening, f64) -> f64| {
+        energies.as_ref().filter(|_| adhesion > 0.0).map(|(energy, _)| of(energy, adhesion))
+    };
     let [whole, octave] = [ratio(Flattening::persson_tosatti), ratio(Flattening::conformity)];
     Verdict {
         case_id: unit.id.clone(),
         method: params.method.kind(),
-        regime: energies.map(|(energy, slope)| Regime::expected(&energy, adhesion, params.cycle.largest_load(), slope)),
+        regime: energies
+            .map(|(energy, slope)| Regime::expected(&energy, adhesion, params.cycle.largest_load(), slope)),
         persson_tosatti: whole,
         conformity: octave,
         work_of_adhesion_j_m2: adhesion,
-        effective_adhesion_j_m2: energies.and_then(|(energy, slope)| effective_adhesion(adhesion, slope, energy.whole_j_m2)),
+        effective_adhesion_j_m2: energies
+            .and_then(|(energy, slope)| effective_adhesion(adhesion, slope, energy.whole_j_m2)),
         cost: cost(params, known, whole),
         error: None,
     }
@@ -100,7 +111,8 @@ fn energies(params: &CaseParams, known: Option<&Known>) -> Option<(Flattening, f
 /// The problem and the help if the scan cannot be read.
 pub fn chosen_method(params: &CaseParams) -> Result<Method, (String, String)> {
     let refused = |error: &str| {
-        let (problem, help) = error.split_once("\nhelp: ").unwrap_or((error, "write \"asperities\" or \"boundary_elements\""));
+        let (problem, help) =
+            error.split_once("\nhelp: ").unwrap_or((error, "write \"asperities\" or \"boundary_elements\""));
         (problem.to_owned(), help.to_owned())
     };
     let Some(surface) = params.surface.measured() else { return Ok(params.method.kind()) };
@@ -115,7 +127,9 @@ pub fn chosen_method(params: &CaseParams) -> Result<Method, (String, String)> {
     }
     let Some((energy, slope)) = energies(params, Some(known)) else { return Ok(Method::Asperities) };
     let fails = || error(params, Some(&preview)).is_some();
-    let method = Regime::expected(&energy, params.material.work_of_adhesion_j_m2, params.cycle.largest_load(), slope).method();
+    let method =
+        Regime::expected(&energy, params.material.work_of_adhesion_j_m2, params.cycle.largest_load(), slope)
+            .method();
     Ok(if method == Method::Asperities && fails() { Method::BoundaryElements } else { method })
 }
 

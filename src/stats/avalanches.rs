@@ -6,7 +6,8 @@ use super::{CaseInput, CycleInput, StatsError};
 use crate::schema::{AVALANCHES, EventCounts};
 use crate::store::Frame;
 
-/// Sums the events of each avalanche up; rows are ordered by case, realization and place along the path, whatever the order of the inputs.
+/// Sums the events of each avalanche up; rows are ordered by case, realization and place along the path,
+/// whatever the order of the inputs.
 ///
 /// A cycle without events has no row.
 ///

@@ -13,11 +13,13 @@ use super::{CaseInput, Given, StatsError};
 use crate::schema::{CASES, Kind, REALIZATIONS};
 use crate::store::{ColumnData, Frame};
 
-/// Averages each case at each of its load reversals. The rows have the order of the inputs, and the load reversals of a case ascend.
+/// Averages each case at each of its load reversals. The rows have the order of the inputs, and the load
+/// reversals of a case ascend.
 ///
-/// A case without finished realization has its row, with null means. The table has `<column>_mean`, `_sd`, `_ci95_low`, `_ci95_high`, `_min` and `_max` of
-/// columns of the table `realizations`; realizations in which that column is null are omitted. Columns that depend on the surface alone
-/// ([`CaseInput::surfaces`]) include the surfaces of failed cycles. Fractions of contacts are weighted by the number of contacts.
+/// A case without finished realization has its row, with null means. The table has `<column>_mean`, `_sd`,
+/// `_ci95_low`, `_ci95_high`, `_min` and `_max` of columns of the table
+/// `realizations`; realizations in which that column is null are omitted. Columns that depend on the surface alone ([`CaseInput::surfaces`])
+/// include the surfaces of failed cycles. Fractions of contacts are weighted by the number of contacts.
 ///
 /// # Errors
 /// If a column is missing, or a required parameter of a case was not given.
@@ -29,10 +31,15 @@ pub fn cases(realizations: &Frame, inputs: &[CaseInput]) -> Result<Frame, StatsE
         max_loads.sort_by(f64::total_cmp);
         for max_load in max_loads {
             // A load reversal is a number of the spec, copied; the tolerance covers the rounding in a file.
-            let same = |group: &&Group| group.case_id == case.case_id && (group.max_load - max_load).abs() <= 1e-9 * max_load.abs();
+            let same = |group: &&Group| {
+                group.case_id == case.case_id && (group.max_load - max_load).abs() <= 1e-9 * max_load.abs()
+            };
             let none = Group::default();
             let group = groups.iter().find(same).unwrap_or(&none);
-            let finished = groups.iter().filter(|group| group.case_id == case.case_id).flat_map(|group| &group.realizations);
+            let finished = groups
+                .iter()
+                .filter(|group| group.case_id == case.case_id)
+                .flat_map(|group| &group.realizations);
             let finished = finished.collect::<BTreeSet<_>>().len();
             rows.push(&[&identity(case), &averages(group, case, max_load, finished), &case.parameters]);
         }
@@ -63,8 +70,12 @@ const STATISTICS: [(&str, Statistic); 6] = [
 impl Statistic {
     /// The column of the table `realizations` behind a column of the table `cases`, and what is said of it.
     fn of(column: &'static str) -> Option<(&'static str, Self)> {
-        let numbers = |base: &str| REALIZATIONS.column(base).is_some_and(|base| matches!(base.kind, Kind::F64 | Kind::I64));
-        STATISTICS.iter().find_map(|(end, what)| column.strip_suffix(end).filter(|base| numbers(base)).map(|base| (base, *what)))
+        let numbers = |base: &str| {
+            REALIZATIONS.column(base).is_some_and(|base| matches!(base.kind, Kind::F64 | Kind::I64))
+        };
+        STATISTICS.iter().find_map(|(end, what)| {
+            column.strip_suffix(end).filter(|base| numbers(base)).map(|base| (base, *what))
+        })
     }
 
     fn take(self, values: &[f64]) -> Option<f64> {
@@ -84,7 +95,8 @@ impl Statistic {
 /// The columns of the table `realizations` that the table `cases` says something of.
 fn averaged() -> Vec<&'static str> {
     let counts = POOLED.iter().flat_map(|(_, part, whole)| whole.iter().copied().chain([*part]));
-    let mut names: Vec<&str> = CASES.columns.iter().filter_map(|column| Statistic::of(column.name)).map(|(base, _)| base).collect();
+    let mut names: Vec<&str> =
+        CASES.columns.iter().filter_map(|column| Statistic::of(column.name)).map(|(base, _)| base).collect();
     names.extend(counts);
     names.sort_unstable();
     names.dedup();
@@ -102,11 +114,16 @@ struct Group {
     values: Vec<(&'static str, Vec<f64>)>,
 }
 
-/// Fractions whose mean is the ratio of two sums over all realizations: the column, the counted contacts or asperities, and the counts of which they are a
-/// part. The mean of the fractions of single surfaces would give a surface with one contact the weight of one with a hundred.
+/// Fractions whose mean is the ratio of two sums over all realizations: the column, the counted contacts or
+/// asperities, and the counts of which they are a part. The mean of the fractions of single surfaces would
+/// give a surface with one contact the weight of one with a hundred.
 const POOLED: [(&str, &str, &[&str]); 2] = [
     ("touching_share", "touching_count_at_max_load", &["contact_count_at_max_load"]),
-    ("covered_share", "covered_count_at_max_load", &["contact_count_at_max_load", "covered_count_at_max_load"]),
+    (
+        "covered_share",
+        "covered_count_at_max_load",
+        &["contact_count_at_max_load", "covered_count_at_max_load"],
+    ),
 ];
 
 impl Group {
@@ -127,8 +144,13 @@ fn averages(group: &Group, case: &CaseInput, max_load: f64, finished: usize) -> 
     for column in CASES.columns {
         let Some((base, what)) = Statistic::of(column.name) else { continue };
         let pooled = POOLED.iter().find(|(name, ..)| what == Statistic::Mean && *name == base);
-        let of_surfaces: Vec<f64> =
-            case.surfaces.iter().flatten().filter(|(name, _)| name == base).filter_map(|(_, value)| value.number()).collect();
+        let of_surfaces: Vec<f64> = case
+            .surfaces
+            .iter()
+            .flatten()
+            .filter(|(name, _)| name == base)
+            .filter_map(|(_, value)| value.number())
+            .collect();
         let value = match pooled {
             Some((_, part, whole)) => group.pooled(part, whole),
             None if of_surfaces.is_empty() => what.take(group.values(base)),
@@ -159,9 +181,12 @@ fn groups(realizations: &Frame) -> Result<Vec<Group>, StatsError> {
     let rows = grouped(columns, &["case_id", "max_load"], &["case_id", "max_load", "realization"]);
     let rows = rows.map_err(|source| StatsError::Group { table: realizations.table().name, source })?;
     let values = |name: &'static str| Ok((name, numbers(realizations, name)?));
-    let columns: Vec<(&str, Vec<Option<f64>>)> = averaged().into_iter().map(values).collect::<Result<_, StatsError>>()?;
+    let columns: Vec<(&str, Vec<Option<f64>>)> =
+        averaged().into_iter().map(values).collect::<Result<_, StatsError>>()?;
     let unconverged = numbers(realizations, "unconverged_count")?;
-    let picked = |values: &[Option<f64>], rows: &[usize]| rows.iter().filter_map(|row| values[*row]).collect::<Vec<f64>>();
+    let picked = |values: &[Option<f64>], rows: &[usize]| {
+        rows.iter().filter_map(|row| values[*row]).collect::<Vec<f64>>()
+    };
     let group = |rows: Vec<usize>| {
         let first = rows.first().copied()?;
         Some(Group {

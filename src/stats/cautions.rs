@@ -19,12 +19,19 @@ pub struct Caution {
     pub action: &'static str,
 }
 
-const fn warning(code: &'static str, label: &'static str, text: &'static str, consequence: &'static str, action: &'static str) -> Caution {
+const fn warning(
+    code: &'static str,
+    label: &'static str,
+    text: &'static str,
+    consequence: &'static str,
+    action: &'static str,
+) -> Caution {
     Caution { code, label, text, consequence, action }
 }
 
-/// All warnings by severity, which is the order of their codes in the column `caution`: results outside the model, then results that depend on a rule of the model,
-/// then incomplete or inaccurate results, then small samples.
+/// All warnings by severity, which is the order of their codes in the column `caution`: results outside the
+/// model, then results that depend on a rule of the model, then incomplete or inaccurate results, then small
+/// samples.
 pub const CAUTIONS: [Caution; 26] = [
     warning(
         "sticky",
@@ -79,7 +86,8 @@ pub const CAUTIONS: [Caution; 26] = [
         "overshoot",
         "filter overshoot",
         "filtered heights exceed the measured heights nearby by {} of the rms height, beyond the noise",
-        "The sharp low-pass filter rings at steps, so the highest asperities do not exist on the measured surface.",
+        "The sharp low-pass filter rings at steps, so the highest asperities do not exist on the measured \
+         surface.",
         "Use `surface.filter = \"gaussian\"`, and `hysteron import --filter gaussian` for an imported file.",
     ),
     warning(
@@ -93,7 +101,8 @@ pub const CAUTIONS: [Caution; 26] = [
         "full_contact",
         "full contact",
         "A/A₀ = {} at F_max",
-        "F_po follows from the strength Δγ/ε, the range ε of `interaction_range_m`, and not from the roughness.",
+        "F_po follows from the strength Δγ/ε, the range ε of `interaction_range_m`, and not from the \
+         roughness.",
         "Reduce `max_load` below full contact, or quote F_po with ε.",
     ),
     warning(
@@ -107,13 +116,15 @@ pub const CAUTIONS: [Caution; 26] = [
         "texture",
         "anisotropic texture",
         "texture aspect ratio = {}",
-        "Asperities are not spheres, and expected ratios, Θ_DK and Nayak's density hold for isotropic surfaces only.",
+        "Asperities are not spheres, and expected ratios, Θ_DK and Nayak's density hold for isotropic \
+         surfaces only.",
         "Use `method = \"boundary_elements\"`; quote the loop only.",
     ),
     warning(
         "outliers",
         "outliers of the scan",
-        "{} of the points of the scan are isolated spikes or dips beyond 6 robust standard deviations of their neighbours",
+        "{} of the points of the scan are isolated spikes or dips beyond 6 robust standard deviations of \
+         their neighbours",
         "Each one makes an asperity or a pit, raises h_rms and lowers the contact area.",
         "Replace them with `surface.outliers = true` (`--outliers`), or check that they are real.",
     ),
@@ -135,8 +146,10 @@ pub const CAUTIONS: [Caution; 26] = [
         "tip",
         "rounded by a tip",
         "curvature of the sharpest summits over that of the sharpest valleys = {}",
-        "The scan looks as if a blunt tip had traced it: asperities are too round, and the pull-off force is too large.",
-        "State the tip radius with `surface.tip_radius_m` (`--tip-radius`), which removes unreliable wavelengths, or use a sharper tip.",
+        "The scan looks as if a blunt tip had traced it: asperities are too round, and the pull-off force is \
+         too large.",
+        "State the tip radius with `surface.tip_radius_m` (`--tip-radius`), which removes unreliable \
+         wavelengths, or use a sharper tip.",
     ),
     warning(
         "failed",
@@ -150,7 +163,8 @@ pub const CAUTIONS: [Caution; 26] = [
         "load not reached",
         "{} have no result at a load reversal",
         "The means are of the realizations that reached it.",
-        "Read the reasons in the column `failure` of the table `cycles`, and reduce `max_load` or follow their help.",
+        "Read the reasons in the column `failure` of the table `cycles`, and reduce `max_load` or follow \
+         their help.",
     ),
     warning(
         "incomplete",
@@ -178,7 +192,8 @@ pub const CAUTIONS: [Caution; 26] = [
         "energy balance",
         "loop area and event energies differ by {} of Θ",
         "The partition of Θ over events, branches and kinds has this error.",
-        "Quote the loop area `loss`; `interaction = \"point\"` has an exact balance. Boundary elements: reduce `boundary_elements.approach_step`.",
+        "Quote the loop area `loss`; `interaction = \"point\"` has an exact balance. Boundary elements: \
+         reduce `boundary_elements.approach_step`.",
     ),
     warning(
         "few_contacts",
@@ -228,7 +243,8 @@ pub struct Limit {
     pub column: &'static str,
     /// The limit; the limit itself is within the range.
     pub bound: f64,
-    /// True for a minimum, false for a maximum. Maxima below 1 are fractions, written in percent; other limits are ratios or numbers.
+    /// True for a minimum, false for a maximum. Maxima below 1 are fractions, written in percent; other
+    /// limits are ratios or numbers.
     pub at_least: bool,
 }
 
@@ -256,7 +272,10 @@ impl Limit {
     /// Column of a surface or cycle, of which the column of the limit is a statistic.
     #[must_use]
     pub fn of_one(&self) -> &'static str {
-        ["_mean", "_min", "_max"].into_iter().find_map(|end| self.column.strip_suffix(end)).unwrap_or(self.column)
+        ["_mean", "_min", "_max"]
+            .into_iter()
+            .find_map(|end| self.column.strip_suffix(end))
+            .unwrap_or(self.column)
     }
 
     /// True if a number is beyond the limit. A missing number is not.
@@ -305,29 +324,50 @@ pub fn condition(code: &str) -> Option<&'static str> {
 }
 
 /// Warnings of the asperity model, which boundary elements do not have.
-const OF_ASPERITIES: [&str; 9] =
-    ["sticky", "area", "conformed", "covered", "absorption", "touching", "texture", "few_contacts", "few_asperities"];
+const OF_ASPERITIES: [&str; 9] = [
+    "sticky",
+    "area",
+    "conformed",
+    "covered",
+    "absorption",
+    "touching",
+    "texture",
+    "few_contacts",
+    "few_asperities",
+];
 
 /// Shortest step of boundary elements, of the rms height, above which events are not located.
 pub const LONGEST_STEP: f64 = 0.05;
 
 /// Step of the case after all its halvings, of the rms height.
 fn shortest_step(case: &CaseInput) -> f64 {
-    let number = |column: &str| case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.number());
+    let number = |column: &str| {
+        case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.number())
+    };
     number("approach_step").unwrap_or_default() / number("halvings").unwrap_or_default().exp2()
 }
 
-/// Codes of the warnings of a row whose other columns are given, joined by `+`. The counts are those of the realizations with a result in the row and at any load of
-/// its case.
-pub(super) fn caution(row: &Given, case: &CaseInput, [done_count, finished_count]: [usize; 2], unconverged: bool) -> String {
-    let is = |column: &str, value: Value| case.parameters.iter().any(|(name, known)| name == column && *known == value);
+/// Codes of the warnings of a row whose other columns are given, joined by `+`. The counts are those of the
+/// realizations with a result in the row and at any load of its case.
+pub(super) fn caution(
+    row: &Given,
+    case: &CaseInput,
+    [done_count, finished_count]: [usize; 2],
+    unconverged: bool,
+) -> String {
+    let is = |column: &str, value: Value| {
+        case.parameters.iter().any(|(name, known)| name == column && *known == value)
+    };
     let by_elements = is("method", Value::from("boundary_elements"));
-    let wu = (is("jump_in", Value::from("wu")) || is("nucleation", Value::from("wu"))) && !is("work_of_adhesion_j_m2", Value::from(0.0));
+    let wu = (is("jump_in", Value::from("wu")) || is("nucleation", Value::from("wu")))
+        && !is("work_of_adhesion_j_m2", Value::from(0.0));
     let number = |column: &str| match row.iter().find(|(name, _)| name == column) {
         Some((_, Value::Real(number))) => Some(*number),
         _ => None,
     };
-    let passed = |word: &str| LIMITS.iter().any(|limit| limit.caution == word && limit.is_passed(number(limit.column)));
+    let passed = |word: &str| {
+        LIMITS.iter().any(|limit| limit.caution == word && limit.is_passed(number(limit.column)))
+    };
     let holds = |word: &str| match word {
         _ if by_elements && OF_ASPERITIES.contains(&word) => false,
         "full_contact" => by_elements && number("area_at_max_load_mean").is_some_and(|area| area >= 1.0),

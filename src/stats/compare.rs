@@ -6,7 +6,8 @@ use crate::schema::{COMPARISON, Kind, parameters_by_rank};
 use crate::store::{ColumnData, Frame};
 
 /// Compared quantities: columns of the table `realizations`.
-const QUANTITIES: [&str; 5] = ["area_at_max_load", "penetration_at_max_load", "pull_off_load", "loss", "loss_ratio_dk"];
+const QUANTITIES: [&str; 5] =
+    ["area_at_max_load", "penetration_at_max_load", "pull_off_load", "loss", "loss_ratio_dk"];
 
 /// One campaign that is compared.
 #[derive(Debug, Clone)]
@@ -63,14 +64,17 @@ pub(super) fn names() -> impl Iterator<Item = &'static str> {
 /// campaigns.
 pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
     let values = |side: &Side, parameter: &str| -> Result<Vec<String>, StatsError> {
-        let mut all: Vec<String> = (0..side.cases.row_count()).map(|row| written(&side.cases, parameter, row)).collect::<Result<_, _>>()?;
+        let mut all: Vec<String> = (0..side.cases.row_count())
+            .map(|row| written(&side.cases, parameter, row))
+            .collect::<Result<_, _>>()?;
         all.sort_unstable();
         all.dedup();
         Ok(all)
     };
     let mut differing = Vec::new();
     for parameter in names() {
-        let all: Vec<Vec<String>> = sides.iter().map(|side| values(side, parameter)).collect::<Result<_, _>>()?;
+        let all: Vec<Vec<String>> =
+            sides.iter().map(|side| values(side, parameter)).collect::<Result<_, _>>()?;
         if all.windows(2).any(|pair| pair.first() != pair.last()) {
             differing.push(parameter);
         }
@@ -79,22 +83,33 @@ pub fn matched(sides: &[Side]) -> Result<Matched, StatsError> {
         .iter()
         .map(|side| {
             let columns = || names().filter(|name| !differing.contains(name)).chain(["max_load"]);
-            let key = |row: usize| columns().map(|column| written(&side.cases, column, row)).collect::<Result<Vec<_>, _>>();
+            let key = |row: usize| {
+                columns().map(|column| written(&side.cases, column, row)).collect::<Result<Vec<_>, _>>()
+            };
             (0..side.cases.row_count()).map(|row| key(row).map(|parts| parts.join("\n"))).collect()
         })
         .collect::<Result<_, StatsError>>()?;
     for (side, keys) in sides.iter().zip(&keys) {
         if let Some((row, _)) = keys.iter().enumerate().find(|(row, key)| keys[..*row].contains(key)) {
             let case_id = side.cases.text("case_id")?.get(row).copied().unwrap_or_default().to_owned();
-            return Err(StatsError::Ambiguous { label: side.label.clone(), case_id, differing: differing.join(", ") });
+            return Err(StatsError::Ambiguous {
+                label: side.label.clone(),
+                case_id,
+                differing: differing.join(", "),
+            });
         }
     }
-    let places = |key: &String| keys.iter().map(|keys| keys.iter().position(|other| other == key)).collect::<Option<Vec<usize>>>();
-    let mut groups: Vec<Group> = keys.first().into_iter().flatten().filter_map(places).map(|rows| Group { rows }).collect();
+    let places = |key: &String| {
+        keys.iter().map(|keys| keys.iter().position(|other| other == key)).collect::<Option<Vec<usize>>>()
+    };
+    let mut groups: Vec<Group> =
+        keys.first().into_iter().flatten().filter_map(places).map(|rows| Group { rows }).collect();
     if let Some(first) = sides.first() {
         let ranks = names().chain(["max_load"]).map(|name| ranks(&first.cases, name));
         let ranks: Vec<Vec<usize>> = ranks.collect::<Result<_, _>>()?;
-        groups.sort_by_cached_key(|group| ranks.iter().map(|ranks| ranks[group.rows[0]]).collect::<Vec<usize>>());
+        groups.sort_by_cached_key(|group| {
+            ranks.iter().map(|ranks| ranks[group.rows[0]]).collect::<Vec<usize>>()
+        });
     }
     let left_over = keys.iter().map(|keys| keys.len() - groups.len()).collect();
     Ok(Matched { differing, groups, left_over })
@@ -117,7 +132,8 @@ fn ranks(frame: &Frame, column: &str) -> Result<Vec<usize>, StatsError> {
 fn samples(cases: &Frame, all: &Frame, row: usize, quantity: &str) -> Result<Vec<(String, f64)>, StatsError> {
     let of = |column: &str| -> Result<String, StatsError> { written(cases, column, row) };
     let (case, load) = (of("case_id")?, cases.f64_or_null("max_load")?.get(row).copied().flatten());
-    let (ids, loads, surfaces) = (all.text_or_null("case_id")?, all.f64_or_null("max_load")?, all.text_or_null("surface_id")?);
+    let (ids, loads, surfaces) =
+        (all.text_or_null("case_id")?, all.f64_or_null("max_load")?, all.text_or_null("surface_id")?);
     let values = all.f64_or_null(quantity)?;
     let of_row = |k: &usize| ids[*k].as_deref() == Some(case.as_str()) && loads[*k] == load;
     let sample = |k: usize| values[k].map(|value| (surfaces[k].clone().unwrap_or_default(), value));
@@ -128,11 +144,17 @@ fn samples(cases: &Frame, all: &Frame, row: usize, quantity: &str) -> Result<Vec
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn singles(cases: &Frame, realizations: &Frame, row: usize, quantity: &str) -> Result<Vec<f64>, StatsError> {
+pub fn singles(
+    cases: &Frame,
+    realizations: &Frame,
+    row: usize,
+    quantity: &str,
+) -> Result<Vec<f64>, StatsError> {
     Ok(samples(cases, realizations, row, quantity)?.into_iter().map(|(_, value)| value).collect())
 }
 
-/// The difference of a quantity between two rows of the table `cases`, the second of which is the reference; nothing if one of them has no realization.
+/// The difference of a quantity between two rows of the table `cases`, the second of which is the reference;
+/// nothing if one of them has no realization.
 ///
 /// # Errors
 /// If a table lacks a column.
@@ -142,7 +164,10 @@ pub fn difference_of(
     [row, reference]: [usize; 2],
     quantity: &str,
 ) -> Result<Option<Difference>, StatsError> {
-    Ok(difference(&samples(cases, realizations, row, quantity)?, &samples(cases, realizations, reference, quantity)?))
+    Ok(difference(
+        &samples(cases, realizations, row, quantity)?,
+        &samples(cases, realizations, reference, quantity)?,
+    ))
 }
 
 /// The difference of two means.
@@ -160,20 +185,31 @@ pub struct Difference {
     pub counts: [usize; 2],
 }
 
-/// Of two samples, the second of which is the reference; surface by surface, where all surfaces of one are surfaces of the other.
+/// Of two samples, the second of which is the reference; surface by surface, where all surfaces of one are
+/// surfaces of the other.
 fn difference(mine: &[(String, f64)], other: &[(String, f64)]) -> Option<Difference> {
-    let pairs: Vec<(f64, f64)> =
-        mine.iter().filter_map(|(surface, a)| other.iter().find(|(known, _)| known == surface).map(|(_, b)| (*a, *b))).collect();
+    let pairs: Vec<(f64, f64)> = mine
+        .iter()
+        .filter_map(|(surface, a)| other.iter().find(|(known, _)| known == surface).map(|(_, b)| (*a, *b)))
+        .collect();
     let paired = !pairs.is_empty() && pairs.len() == mine.len().min(other.len());
-    let (a, b): (Vec<f64>, Vec<f64>) =
-        if paired { pairs.into_iter().unzip() } else { (mine.iter().map(|s| s.1).collect(), other.iter().map(|s| s.1).collect()) };
+    let (a, b): (Vec<f64>, Vec<f64>) = if paired {
+        pairs.into_iter().unzip()
+    } else {
+        (mine.iter().map(|s| s.1).collect(), other.iter().map(|s| s.1).collect())
+    };
     let (first, second) = (Sample::of(&a), Sample::of(&b));
     let means = [first.mean?, second.mean?];
-    let ci95 = if paired { Sample::of(&a.iter().zip(&b).map(|(a, b)| a - b).collect::<Vec<f64>>()).ci95 } else { welch(&first, &second) };
+    let ci95 = if paired {
+        Sample::of(&a.iter().zip(&b).map(|(a, b)| a - b).collect::<Vec<f64>>()).ci95
+    } else {
+        welch(&first, &second)
+    };
     Some(Difference { means, of: means[0] - means[1], ci95, paired, counts: [a.len(), b.len()] })
 }
 
-/// Half the 95 % interval of the difference of two independent means (Welch, Biometrika 34:28, 1947), its degrees of freedom rounded down.
+/// Half the 95 % interval of the difference of two independent means (Welch, Biometrika 34:28, 1947), its
+/// degrees of freedom rounded down.
 fn welch(first: &Sample, second: &Sample) -> Option<f64> {
     let part = |sample: &Sample| sample.sd.map(|sd| sd * sd / sample.count as f64);
     let (a, b) = (part(first)?, part(second)?);
@@ -233,7 +269,10 @@ pub fn comparison(sides: &[Side], matched: &Matched) -> Result<Frame, StatsError
         .f64("reference_mean", each(|d| d.means[1]))
         .f64("difference", each(|d| d.of))
         .f64("difference_ci95", rows.iter().map(|row| row.5.ci95))
-        .f64("relative_difference", rows.iter().map(|row| Some(row.5.of / row.5.means[1].abs()).filter(|share| share.is_finite())))
+        .f64(
+            "relative_difference",
+            rows.iter().map(|row| Some(row.5.of / row.5.means[1].abs()).filter(|share| share.is_finite())),
+        )
         .bool("paired", rows.iter().map(|row| row.5.paired))
         .count("realization_count", rows.iter().map(|row| row.5.counts[0]))
         .count("reference_realization_count", rows.iter().map(|row| row.5.counts[1]))
@@ -264,9 +303,9 @@ pub fn together(parts: &[(&Frame, Vec<usize>, String)]) -> Result<Frame, StatsEr
             Kind::F64 => ColumnData::F64(gathered(parts, |frame| Ok(frame.f64_or_null(name)?.to_vec()))?),
             Kind::I64 => ColumnData::I64(gathered(parts, |frame| Ok(frame.i64_or_null(name)?.to_vec()))?),
             Kind::Bool => ColumnData::Bool(gathered(parts, |frame| Ok(frame.bool_or_null(name)?.to_vec()))?),
-            Kind::Text if name == "case_id" => {
-                ColumnData::Text(parts.iter().flat_map(|(_, rows, id)| rows.iter().map(|_| Some(id.clone()))).collect())
-            }
+            Kind::Text if name == "case_id" => ColumnData::Text(
+                parts.iter().flat_map(|(_, rows, id)| rows.iter().map(|_| Some(id.clone()))).collect(),
+            ),
             Kind::Text => ColumnData::Text(gathered(parts, |frame| Ok(frame.text_or_null(name)?.to_vec()))?),
         };
         builder = builder.with(name, data);

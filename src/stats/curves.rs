@@ -49,7 +49,10 @@ struct Bundle {
 
 fn push_case(rows: &mut Rows, of_case: &[(&CaseInput, &CycleInput)]) -> Result<(), StatsError> {
     let mut bundles: Vec<Bundle> = Vec::new();
-    let mut add = |max_load: Option<f64>, from: f64, walk: Walk| match bundles.iter_mut().find(|bundle| bundle.max_load == max_load) {
+    let mut add = |max_load: Option<f64>, from: f64, walk: Walk| match bundles
+        .iter_mut()
+        .find(|bundle| bundle.max_load == max_load)
+    {
         Some(bundle) => {
             bundle.from = bundle.from.max(from);
             bundle.walks.push(walk);
@@ -64,7 +67,11 @@ fn push_case(rows: &mut Rows, of_case: &[(&CaseInput, &CycleInput)]) -> Result<(
             if at + 1 == cycle.unloading.len() {
                 add(None, *max_load, exact(cycle.loading.backwards_from(row), *max_load));
             }
-            add(Some(*max_load), *max_load, exact(unloading.onwards_from(points.get(row).copied()), *max_load));
+            add(
+                Some(*max_load),
+                *max_load,
+                exact(unloading.onwards_from(points.get(row).copied()), *max_load),
+            );
         }
     }
     bundles.sort_by(|a, b| a.max_load.is_some().cmp(&b.max_load.is_some()).then(a.from.total_cmp(&b.from)));
@@ -76,7 +83,8 @@ fn push_case(rows: &mut Rows, of_case: &[(&CaseInput, &CycleInput)]) -> Result<(
     Ok(())
 }
 
-/// A walk whose first load is the turning point's exactly: solved to 1e-9, it could else lie just below the first station and miss it.
+/// A walk whose first load is the turning point's exactly: solved to 1e-9, it could else lie just below the
+/// first station and miss it.
 fn exact(mut walk: Walk, max_load: f64) -> Walk {
     if let Some(first) = walk.0.first_mut() {
         first.load = max_load;
@@ -86,12 +94,17 @@ fn exact(mut walk: Walk, max_load: f64) -> Walk {
 
 fn push_bundle(rows: &mut Rows, identity: &Given, bundle: &Bundle) {
     let read: Vec<Vec<Option<Point>>> = bundle.walks.iter().map(|walk| walk.stations(bundle.from)).collect();
-    let stations = if bundle.walks.iter().all(|walk| walk.greatest_tension() == 0.0) { COMPRESSION_STATIONS } else { STATIONS };
+    let stations = if bundle.walks.iter().all(|walk| walk.greatest_tension() == 0.0) {
+        COMPRESSION_STATIONS
+    } else {
+        STATIONS
+    };
     let loading = bundle.max_load.is_none();
     for index in 0..stations {
         // A loading branch is walked backwards, and its rows follow the path.
         let station = if loading { stations - 1 - index } else { index };
-        let points: Vec<Point> = read.iter().filter_map(|walk| walk.get(station).copied().flatten()).collect();
+        let points: Vec<Point> =
+            read.iter().filter_map(|walk| walk.get(station).copied().flatten()).collect();
         let Some(first) = points.first() else {
             continue;
         };

@@ -54,7 +54,10 @@ impl Cycle {
                 _ => {
                     return Err(fault(
                         path,
-                        format!("hold a branch {word:?} with max_load {max_load:?}; loading has none, unloading has one"),
+                        format!(
+                            "hold a branch {word:?} with max_load {max_load:?}; loading has none, unloading \
+                             has one"
+                        ),
                     ));
                 }
             }
@@ -67,7 +70,9 @@ impl Cycle {
     /// The position in the loading branch of the step at which it turned.
     pub(super) fn turning_row(&self, input: &CycleInput, max_load: f64) -> Result<usize, StatsError> {
         let row = self.loading.reversal_load.iter().position(|load| *load == Some(max_load));
-        row.ok_or_else(|| fault(&input.steps, format!("have no loading step at the turning point {max_load}")))
+        row.ok_or_else(|| {
+            fault(&input.steps, format!("have no loading step at the turning point {max_load}"))
+        })
     }
 }
 
@@ -79,7 +84,11 @@ impl Branch {
     /// Points of the branch, in the order of the path.
     pub(super) fn points(&self) -> impl DoubleEndedIterator<Item = Point> {
         let rest = self.area.iter().zip(&self.penetration);
-        self.load.iter().zip(rest).map(|(load, (area, penetration))| Point { load: *load, area: *area, penetration: *penetration })
+        self.load.iter().zip(rest).map(|(load, (area, penetration))| Point {
+            load: *load,
+            area: *area,
+            penetration: *penetration,
+        })
     }
 
     /// The branch walked from its turning row backwards.

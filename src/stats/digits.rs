@@ -7,7 +7,8 @@ const DIGITS: usize = 4;
 const ALL_DIGITS: usize = 17;
 
 /// SI prefixes with their powers of ten.
-const PREFIXES: [(i32, &str); 8] = [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M"), (9, "G")];
+const PREFIXES: [(i32, &str); 8] =
+    [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M"), (9, "G")];
 
 /// A number with at most `digits` significant digits and no zeros at its end: `0.055`, `5e-10`.
 #[must_use]
@@ -26,15 +27,24 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// Magnitudes that three digits show readably: `0.0100` to `99999`.
 const READABLE: (f64, f64) = (0.01, 1e5);
 
-/// The common power of ten of a column of numbers, a multiple of three. The median decides; the power moves towards the smallest or the largest number as long
-/// as that makes more of the column readable.
+/// The common power of ten of a column of numbers, a multiple of three. The median decides; the power moves
+/// towards the smallest or the largest number as long as that makes more of the column readable.
 #[must_use]
 pub fn column_exponent(values: impl IntoIterator<Item = f64>) -> i32 {
-    let mut sizes: Vec<f64> = values.into_iter().map(f64::abs).filter(|size| *size > 0.0 && size.is_finite()).collect();
+    let mut sizes: Vec<f64> =
+        values.into_iter().map(f64::abs).filter(|size| *size > 0.0 && size.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
-    let (Some(median), Some(smallest), Some(largest)) = (sizes.get(sizes.len() / 2), sizes.first(), sizes.last()) else { return 0 };
+    let (Some(median), Some(smallest), Some(largest)) =
+        (sizes.get(sizes.len() / 2), sizes.first(), sizes.last())
+    else {
+        return 0;
+    };
     // A median of 0.1 to 100 units; numbers of 0.01 to 1000 need no factor.
-    let of_median = if (0.01..1e3).contains(median) { 0 } else { ((median.log10() + 1.0) / 3.0 + 1e-9).floor() as i32 * 3 };
+    let of_median = if (0.01..1e3).contains(median) {
+        0
+    } else {
+        ((median.log10() + 1.0) / 3.0 + 1e-9).floor() as i32 * 3
+    };
     let over = |exponent: i32, size: f64| size / 10f64.powi(exponent);
     let mut exponent = of_median;
     while over(exponent, *smallest) < READABLE.0 && over(exponent - 3, *largest) < READABLE.1 {
@@ -59,7 +69,8 @@ pub fn decimals(value: f64, digits: usize) -> usize {
 #[must_use]
 pub fn power_of_ten(exponent: i32) -> String {
     const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let raised = |c: char| c.to_digit(10).and_then(|digit| RAISED.get(digit as usize).copied()).unwrap_or('⁻');
+    let raised =
+        |c: char| c.to_digit(10).and_then(|digit| RAISED.get(digit as usize).copied()).unwrap_or('⁻');
     format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
 }
 
@@ -78,7 +89,8 @@ pub fn labels(values: &[f64]) -> Vec<String> {
     values.iter().map(|value| significant(*value, digits)).collect()
 }
 
-/// Values of a column as labels with its unit, all with one SI prefix: `0.5 nm`, `1 MPa`, `0.055 J/m²`. The unit follows from the column's name.
+/// Values of a column as labels with its unit, all with one SI prefix: `0.5 nm`, `1 MPa`, `0.055 J/m²`. The
+/// unit follows from the column's name.
 #[must_use]
 pub fn labels_with_unit(column: &str, values: &[f64]) -> Vec<String> {
     let (unit, prefixed) = match column {
@@ -87,9 +99,14 @@ pub fn labels_with_unit(column: &str, values: &[f64]) -> Vec<String> {
         name if name.ends_with("_m") => ("m", true),
         _ => return labels(values),
     };
-    let least = values.iter().map(|value| value.abs()).filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min);
+    let least =
+        values.iter().map(|value| value.abs()).filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min);
     // The smallest value is written as 0.1 to 100 units.
-    let wanted = if prefixed && least.is_finite() { ((least.log10() + 1.0) / 3.0 + 1e-9).floor() as i32 * 3 } else { 0 };
+    let wanted = if prefixed && least.is_finite() {
+        ((least.log10() + 1.0) / 3.0 + 1e-9).floor() as i32 * 3
+    } else {
+        0
+    };
     let nearest = PREFIXES.iter().min_by_key(|(power, _)| (power - wanted).abs()).copied();
     let (power, prefix) = nearest.unwrap_or((0, ""));
     let scaled: Vec<f64> = values.iter().map(|value| value / 10f64.powi(power)).collect();

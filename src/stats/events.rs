@@ -56,8 +56,12 @@ impl Events {
     fn of_loop(&self, turning_step: i64, max_load: f64) -> impl Iterator<Item = &Event> {
         // A load reversal is a copied number of the spec; the tolerance only allows for its rounding in a
         // file.
-        let back = move |event: &Event| event.max_load.is_some_and(|load| (load - max_load).abs() <= 1e-9 * max_load.abs());
-        self.0.iter().filter(move |event| if event.loading { event.step <= turning_step } else { back(event) })
+        let back = move |event: &Event| {
+            event.max_load.is_some_and(|load| (load - max_load).abs() <= 1e-9 * max_load.abs())
+        };
+        self.0
+            .iter()
+            .filter(move |event| if event.loading { event.step <= turning_step } else { back(event) })
     }
 
     /// Energies dissipated up to a load reversal, whose step is given, and while unloading from it.
@@ -80,7 +84,10 @@ fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
     let (steps, avalanches) = (frame.i64("step")?, frame.i64("avalanche_id")?);
     let (branches, max_loads) = (frame.text("branch")?, frame.f64_or_null("max_load")?);
     let (kinds, causes) = (frame.text("kind")?, frame.text("cause")?);
-    let known = |word: &str| event_kind(word).ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")));
+    let known = |word: &str| {
+        event_kind(word)
+            .ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))
+    };
     let (approaches, energies) = (frame.f64("approach_m")?, frame.f64("energy_lost_j")?);
     let (loads_before, loads_after) = (frame.f64("load_before_n")?, frame.f64("load_after_n")?);
     let (areas_before, areas_after) = (frame.f64("area_before_m2")?, frame.f64("area_after_m2")?);
@@ -89,7 +96,11 @@ fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
         let loading = match (branch, max_load) {
             ("loading", None) => true,
             ("unloading", Some(_)) => false,
-            _ => return Err(format!("hold a branch {branch:?} with max_load {max_load:?}; loading has none, unloading has one")),
+            _ => {
+                return Err(format!(
+                    "hold a branch {branch:?} with max_load {max_load:?}; loading has none, unloading has one"
+                ));
+            }
         };
         Ok(Event {
             step: steps[row],

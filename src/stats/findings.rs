@@ -1,7 +1,8 @@
 //! The seven findings of Violano and Afferrante (Lubricants 9:7, 2021), judged from the tables of a run.
 //!
-//! A *reading* is a set of cases that differ only in maximum load, magnification and Hurst exponent. Each finding is a statement about a trend
-//! over one of these, so a reading is judged from its widest series over each.
+//! A *reading* is a set of cases that differ only in maximum load, magnification and Hurst exponent. Each
+//! finding is a statement about a trend over one of these, so a reading is judged from its widest series over
+//! each.
 
 use super::StatsError;
 use super::compare::{difference_of, names, singles, written};
@@ -119,7 +120,8 @@ const LOAD: usize = 0;
 const MAGNIFICATION: usize = 1;
 const HURST: usize = 2;
 
-/// The readings of a run and what each shows, in the order of the table `cases`. Readings without any series are left out.
+/// The readings of a run and what each shows, in the order of the table `cases`. Readings without any series
+/// are left out.
 ///
 /// # Errors
 /// If a table lacks a column.
@@ -130,7 +132,10 @@ pub fn findings(cases: &Frame, realizations: &Frame) -> Result<Vec<Reading>, Sta
     let (loads, magnifications, hursts) = (loads?, magnifications?, hursts?);
     for row in 0..cases.row_count() {
         // Measured surfaces have no magnification, and failed cases no load.
-        let (Some(load), Some(magnification), Some(hurst)) = (loads[row], magnifications[row], hursts[row]) else { continue };
+        let (Some(load), Some(magnification), Some(hurst)) = (loads[row], magnifications[row], hursts[row])
+        else {
+            continue;
+        };
         let key = choices(cases, row)?;
         let case = Case { row, at: [load, magnification, hurst] };
         match readings.iter_mut().find(|(known, _)| *known == key) {
@@ -139,10 +144,14 @@ pub fn findings(cases: &Frame, realizations: &Frame) -> Result<Vec<Reading>, Sta
         }
     }
     let firsts: Vec<usize> = readings.iter().map(|(_, rows)| rows[0].row).collect();
-    let differing: Vec<_> = varying(cases, &firsts)?.into_iter().filter(|parameter| !SERIES.contains(&parameter.name)).collect();
+    let differing: Vec<_> =
+        varying(cases, &firsts)?.into_iter().filter(|parameter| !SERIES.contains(&parameter.name)).collect();
     let mut found = Vec::new();
     for (place, (_, rows)) in readings.iter().enumerate() {
-        let words = differing.iter().filter(|parameter| !parameter.is_absent(place)).map(|parameter| parameter.named(place));
+        let words = differing
+            .iter()
+            .filter(|parameter| !parameter.is_absent(place))
+            .map(|parameter| parameter.named(place));
         let name = words.collect::<Vec<_>>().join(", ");
         let reading = Judge { cases, realizations, rows }.reading(name)?;
         found.extend(Some(reading).filter(Reading::has_series));
@@ -179,7 +188,8 @@ impl Judge<'_> {
                 failed_count += failed[case.row];
             }
         }
-        let (loads, magnifications, hursts) = (self.series(LOAD), self.series(MAGNIFICATION), self.series(HURST));
+        let (loads, magnifications, hursts) =
+            (self.series(LOAD), self.series(MAGNIFICATION), self.series(HURST));
         let findings = [
             self.constant_pull_off(&loads)?,
             self.linear_loss(&loads)?,
@@ -192,12 +202,14 @@ impl Judge<'_> {
         Ok(Reading { name, case_ids, planned_count, failed_count, findings })
     }
 
-    /// The longest series over one of the three with the other two fixed, ascending; the first of the longest. Fewer than two are none.
+    /// The longest series over one of the three with the other two fixed, ascending; the first of the
+    /// longest. Fewer than two are none.
     fn series(&self, over: usize) -> Vec<Case> {
         let fixed = |case: &Case| [0, 1, 2].map(|k| if k == over { 0.0 } else { case.at[k] });
         let mut longest: Vec<Case> = Vec::new();
         for case in self.rows {
-            let mut series: Vec<Case> = self.rows.iter().filter(|other| fixed(other) == fixed(case)).copied().collect();
+            let mut series: Vec<Case> =
+                self.rows.iter().filter(|other| fixed(other) == fixed(case)).copied().collect();
             series.sort_by(|a, b| a.at[over].total_cmp(&b.at[over]));
             series.dedup_by(|a, b| a.at[over] == b.at[over]);
             if series.len() > longest.len().max(1) {
@@ -213,7 +225,10 @@ impl Judge<'_> {
 
     /// Means of a quantity over a series; nothing if one is missing or there are fewer than `least`.
     fn means(&self, series: &[Case], quantity: usize, least: usize) -> Result<Option<Vec<f64>>, StatsError> {
-        let means: Vec<Option<f64>> = series.iter().map(|case| Ok(self.sample(case, quantity)?.mean)).collect::<Result<_, StatsError>>()?;
+        let means: Vec<Option<f64>> = series
+            .iter()
+            .map(|case| Ok(self.sample(case, quantity)?.mean))
+            .collect::<Result<_, StatsError>>()?;
         Ok(means.into_iter().collect::<Option<Vec<f64>>>().filter(|means| means.len() >= least))
     }
 
@@ -222,19 +237,31 @@ impl Judge<'_> {
         let Some(means) = self.means(loads, 1, 2)? else { return Ok(None) };
         let (least, most) = extremes(&means);
         let spread = (most - least) * means.len() as f64 / means.iter().sum::<f64>();
-        Ok(Some(Judged { verdict: Verdict::within(spread, SPREADS), numbers: vec![spread], text: percent(spread) }))
+        Ok(Some(Judged {
+            verdict: Verdict::within(spread, SPREADS),
+            numbers: vec![spread],
+            text: percent(spread),
+        }))
     }
 
     /// Finding 2: the largest residual of the straight line of least squares, over the largest Θ.
     fn linear_loss(&self, loads: &[Case]) -> Result<Option<Judged>, StatsError> {
-        let (Some(areas), Some(losses)) = (self.means(loads, 0, 3)?, self.means(loads, 2, 3)?) else { return Ok(None) };
+        let (Some(areas), Some(losses)) = (self.means(loads, 0, 3)?, self.means(loads, 2, 3)?) else {
+            return Ok(None);
+        };
         let count = areas.len() as f64;
         let (x, y) = (areas.iter().sum::<f64>() / count, losses.iter().sum::<f64>() / count);
         let square: f64 = areas.iter().map(|a| (a - x).powi(2)).sum();
         let slope = areas.iter().zip(&losses).map(|(a, e)| (a - x) * (e - y)).sum::<f64>() / square;
         let largest = losses.iter().copied().fold(0.0, f64::max);
-        let residual = areas.iter().zip(&losses).map(|(a, e)| (e - y - slope * (a - x)).abs()).fold(0.0, f64::max) / largest;
-        Ok(Some(Judged { verdict: Verdict::within(residual, RESIDUALS), numbers: vec![residual], text: percent(residual) }))
+        let residual =
+            areas.iter().zip(&losses).map(|(a, e)| (e - y - slope * (a - x)).abs()).fold(0.0, f64::max)
+                / largest;
+        Ok(Some(Judged {
+            verdict: Verdict::within(residual, RESIDUALS),
+            numbers: vec![residual],
+            text: percent(residual),
+        }))
     }
 
     /// Finding 3: smallest and largest `Θ/Θ_DK` of all cases.
@@ -246,16 +273,21 @@ impl Judge<'_> {
         }
         let (least, most) = extremes(&ratios);
         let verdict = Verdict::within(most.max(1.0 / least), FACTORS);
-        Ok(Some(Judged { verdict, numbers: vec![least, most], text: format!("{}–{}", significant(least, 2), significant(most, 2)) }))
+        Ok(Some(Judged {
+            verdict,
+            numbers: vec![least, most],
+            text: format!("{}–{}", significant(least, 2), significant(most, 2)),
+        }))
     }
 
-    /// Findings 4 to 6: the ratio of the last mean to the first one of each series. It holds if the difference has the sign and exceeds
-    /// its 95 % interval, and partly if it has the sign.
+    /// Findings 4 to 6: the ratio of the last mean to the first one of each series. It holds if the
+    /// difference has the sign and exceeds its 95 % interval, and partly if it has the sign.
     fn trends(&self, parts: &[(usize, &[Case], f64)]) -> Result<Option<Judged>, StatsError> {
         let (mut verdicts, mut numbers) = (Vec::new(), Vec::new());
         for (quantity, series, sign) in parts {
             let (Some(first), Some(last)) = (series.first(), series.last()) else { continue };
-            let found = difference_of(self.cases, self.realizations, [last.row, first.row], QUANTITIES[*quantity])?;
+            let found =
+                difference_of(self.cases, self.realizations, [last.row, first.row], QUANTITIES[*quantity])?;
             let Some(found) = found else { continue };
             let certain = found.ci95.is_none_or(|half| half < found.of.abs());
             verdicts.push(match (found.of * sign > 0.0, certain) {
@@ -265,11 +297,13 @@ impl Judge<'_> {
             });
             numbers.push(found.means[0] / found.means[1]);
         }
-        let text = numbers.iter().map(|ratio| format!("×{}", significant(*ratio, 2))).collect::<Vec<_>>().join(" ");
+        let text =
+            numbers.iter().map(|ratio| format!("×{}", significant(*ratio, 2))).collect::<Vec<_>>().join(" ");
         Ok(Verdict::of_all(&verdicts).map(|verdict| Judged { verdict, numbers, text }))
     }
 
-    /// Finding 7: in how many of the comparisons the relative standard deviation is larger where the paper says so.
+    /// Finding 7: in how many of the comparisons the relative standard deviation is larger where the paper
+    /// says so.
     fn scatter(&self, magnifications: &[Case], hursts: &[Case]) -> Result<Option<Judged>, StatsError> {
         let ends = [(magnifications.first(), magnifications.last()), (hursts.last(), hursts.first())];
         let (mut larger, mut all) = (0_usize, 0_usize);
@@ -295,13 +329,19 @@ impl Judge<'_> {
         } else {
             Verdict::No
         };
-        Ok(Some(Judged { verdict, numbers: vec![larger as f64, all as f64], text: format!("{larger} of {all}") }))
+        Ok(Some(Judged {
+            verdict,
+            numbers: vec![larger as f64, all as f64],
+            text: format!("{larger} of {all}"),
+        }))
     }
 }
 
 /// Smallest and largest value.
 fn extremes(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)))
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)))
 }
 
 fn percent(share: f64) -> String {

@@ -1,4 +1,5 @@
-//! Rows of the table `cases` as tables and reports list them: labelled by the parameters that vary, the reference case first, the others in the order of the spec.
+//! Rows of the table `cases` as tables and reports list them: labelled by the parameters that vary, the
+//! reference case first, the others in the order of the spec.
 
 use super::varying::{Varying, varying};
 use super::{StatsError, digits};
@@ -13,7 +14,8 @@ pub struct Listed {
     pub label: String,
     /// True if the row is of the reference case.
     pub is_reference: bool,
-    /// The row of the reference case at the same load; nothing for the reference case itself, and where there is none.
+    /// The row of the reference case at the same load; nothing for the reference case itself, and where there
+    /// is none.
     pub reference: Option<usize>,
 }
 
@@ -26,7 +28,8 @@ pub struct Listing {
     pub reference: Option<String>,
 }
 
-/// The names of all sweeps, each once, in the order of the rows: the column `sweep` joins those of a case by `+`.
+/// The names of all sweeps, each once, in the order of the rows: the column
+/// `sweep` joins those of a case by `+`.
 ///
 /// # Errors
 /// If the table lacks the column.
@@ -40,16 +43,19 @@ pub fn sweeps(cases: &Frame) -> Result<Vec<String>, StatsError> {
     Ok(names)
 }
 
-/// The rows of one sweep: the reference case first, the others in the order of the table, which is that of the spec. Labels are the parameters that vary within
-/// the sweep.
+/// The rows of one sweep: the reference case first, the others in the order of the table, which is that of
+/// the spec. Labels are the parameters that vary within the sweep.
 ///
 /// # Errors
 /// If the table lacks a column.
 pub fn listing_of(cases: &Frame, sweep: &str) -> Result<Vec<Listed>, StatsError> {
     let joined = cases.text("sweep")?;
-    let rows: Vec<usize> = (0..joined.len()).filter(|row| joined[*row].split('+').any(|name| name == sweep)).collect();
+    let rows: Vec<usize> =
+        (0..joined.len()).filter(|row| joined[*row].split('+').any(|name| name == sweep)).collect();
     let list = List::of(cases, rows)?;
-    let label = |place: usize| said(&list.differing, place).map(|parameter| parameter.named(place)).collect::<Vec<_>>().join(", ");
+    let label = |place: usize| {
+        said(&list.differing, place).map(|parameter| parameter.named(place)).collect::<Vec<_>>().join(", ")
+    };
     list.listed(cases, label)
 }
 
@@ -61,11 +67,14 @@ pub fn listing_of(cases: &Frame, sweep: &str) -> Result<Vec<Listed>, StatsError>
 /// If the table lacks a column.
 pub fn listing(cases: &Frame) -> Result<Listing, StatsError> {
     let list = List::of(cases, (0..cases.row_count()).collect())?;
-    let all = |place: usize| said(&list.differing, place).map(|parameter| parameter.assigned(place)).collect::<Vec<_>>().join(", ");
+    let all = |place: usize| {
+        said(&list.differing, place).map(|parameter| parameter.assigned(place)).collect::<Vec<_>>().join(", ")
+    };
     let base = list.references.iter().position(|is| *is);
     let label = |place: usize| match base {
         Some(base) => {
-            let own = said(&list.differing, place).filter(|parameter| parameter.text(place) != parameter.text(base));
+            let own = said(&list.differing, place)
+                .filter(|parameter| parameter.text(place) != parameter.text(base));
             let parts: Vec<String> = own.map(|parameter| parameter.assigned(place)).collect();
             if parts.is_empty() { "reference".to_owned() } else { parts.join(", ") }
         }
@@ -104,18 +113,27 @@ struct List {
 
 impl List {
     fn of(cases: &Frame, rows: Vec<usize>) -> Result<Self, StatsError> {
-        let (ids, loads, reference) = (cases.text("case_id")?, cases.f64("max_load")?, reference_case(cases)?);
+        let (ids, loads, reference) =
+            (cases.text("case_id")?, cases.f64("max_load")?, reference_case(cases)?);
         let references = rows.iter().map(|row| reference.as_deref() == Some(ids[*row])).collect();
-        Ok(Self { differing: varying(cases, &rows)?, loads: rows.iter().map(|row| loads[*row]).collect(), rows, references })
+        Ok(Self {
+            differing: varying(cases, &rows)?,
+            loads: rows.iter().map(|row| loads[*row]).collect(),
+            rows,
+            references,
+        })
     }
 
     fn listed(&self, cases: &Frame, label: impl Fn(usize) -> String) -> Result<Vec<Listed>, StatsError> {
         let mut places: Vec<usize> = (0..self.rows.len()).collect();
         places.sort_by_key(|place| !self.references[*place]);
-        let same_load = |place: usize| (0..self.rows.len()).find(|k| self.references[*k] && self.loads[*k] == self.loads[place]);
+        let same_load = |place: usize| {
+            (0..self.rows.len()).find(|k| self.references[*k] && self.loads[*k] == self.loads[place])
+        };
         let one = |place: usize| -> Result<Listed, StatsError> {
             let is_reference = self.references[place];
-            let label = if self.differing.is_empty() { case_label(cases, self.rows[place])? } else { label(place) };
+            let label =
+                if self.differing.is_empty() { case_label(cases, self.rows[place])? } else { label(place) };
             let reference = same_load(place).filter(|_| !is_reference).map(|k| self.rows[k]);
             Ok(Listed { row: self.rows[place], label, is_reference, reference })
         };

@@ -11,18 +11,27 @@ use crate::store::Frame;
 /// Compared columns of the table `realizations`.
 const COMPARED: [&str; 3] = ["area_at_max_load", "pull_off_load", "loss"];
 
-/// Rows of the table `realizations` of one surface and load, the first by asperities, the second by boundary elements.
+/// Rows of the table `realizations` of one surface and load, the first by asperities, the second by boundary
+/// elements.
 type Pair = [usize; 2];
 
-/// Compares pairs of cases, of which the first is of the asperity model and the second of boundary elements. The rows have the order of the pairs, and of the loads
-/// and surfaces of the first case.
+/// Compares pairs of cases, of which the first is of the asperity model and the second of boundary elements.
+/// The rows have the order of the pairs, and of the loads and surfaces of the first case.
 ///
 /// # Errors
 /// If the table lacks a column.
-pub fn methods(cases: &[CaseInput], pairs: &[[String; 2]], realizations: &Frame) -> Result<Frame, StatsError> {
+pub fn methods(
+    cases: &[CaseInput],
+    pairs: &[[String; 2]],
+    realizations: &Frame,
+) -> Result<Frame, StatsError> {
     let mut rows = Rows::of(&METHODS);
     for pair in pairs {
-        let mut loads: Vec<f64> = cases.iter().find(|case| case.case_id == pair[0]).map(|case| case.max_loads.clone()).unwrap_or_default();
+        let mut loads: Vec<f64> = cases
+            .iter()
+            .find(|case| case.case_id == pair[0])
+            .map(|case| case.max_loads.clone())
+            .unwrap_or_default();
         loads.sort_by(f64::total_cmp);
         for load in loads {
             let found = same_surfaces(pair, load, realizations)?;
@@ -43,7 +52,8 @@ pub fn methods(cases: &[CaseInput], pairs: &[[String; 2]], realizations: &Frame)
                     ("persson_tosatti_realised", ratio[*first].into()),
                     ("surface_count", found.len().into()),
                 ];
-                let named: Given = columns.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+                let named: Given =
+                    columns.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
                 rows.push(&[&named, of_surface, &shared]);
             }
         }
@@ -53,23 +63,36 @@ pub fn methods(cases: &[CaseInput], pairs: &[[String; 2]], realizations: &Frame)
 
 /// The rows of the surfaces that both cases have at a load.
 fn same_surfaces(pair: &[String; 2], load: f64, realizations: &Frame) -> Result<Vec<Pair>, StatsError> {
-    let (ids, loads, surfaces) = (realizations.text("case_id")?, realizations.f64("max_load")?, realizations.text("surface_id")?);
+    let (ids, loads, surfaces) =
+        (realizations.text("case_id")?, realizations.f64("max_load")?, realizations.text("surface_id")?);
     // A load reversal is a number of the spec, copied; the tolerance covers the rounding in a file.
     let of = |id: &str| -> Vec<usize> {
-        (0..ids.len()).filter(|row| ids[*row] == id && (loads[*row] - load).abs() <= 1e-9 * load.abs()).collect()
+        (0..ids.len())
+            .filter(|row| ids[*row] == id && (loads[*row] - load).abs() <= 1e-9 * load.abs())
+            .collect()
     };
     let (first, second) = (of(&pair[0]), of(&pair[1]));
-    let partner = |row: usize| second.iter().copied().find(|other| surfaces[*other] == surfaces[row]).map(|other| [row, other]);
+    let partner = |row: usize| {
+        second.iter().copied().find(|other| surfaces[*other] == surfaces[row]).map(|other| [row, other])
+    };
     Ok(first.into_iter().filter_map(partner).collect())
 }
 
-/// Values, ratios and their statistics of a column. There is no ratio of a dissipated energy that is not resolved.
-fn compare(column: &str, pairs: &[Pair], realizations: &Frame, (shared, own): (&mut Given, &mut [Given])) -> Result<(), StatsError> {
+/// Values, ratios and their statistics of a column. There is no ratio of a dissipated energy that is not
+/// resolved.
+fn compare(
+    column: &str,
+    pairs: &[Pair],
+    realizations: &Frame,
+    (shared, own): (&mut Given, &mut [Given]),
+) -> Result<(), StatsError> {
     let values = realizations.f64_or_null(column)?;
     let mut ratios = Vec::new();
     for (row, [first, second]) in own.iter_mut().zip(pairs) {
         let (asperities, elements) = (values[*first], values[*second]);
-        let ratio = asperities.zip(elements.filter(|elements| *elements != 0.0)).map(|(asperities, elements)| asperities / elements);
+        let ratio = asperities
+            .zip(elements.filter(|elements| *elements != 0.0))
+            .map(|(asperities, elements)| asperities / elements);
         row.push((format!("{column}_asperities"), asperities.into()));
         row.push((format!("{column}_elements"), elements.into()));
         row.push((format!("{column}_ratio"), ratio.into()));
@@ -93,7 +116,8 @@ pub struct MethodPair {
     pub max_load: f64,
     /// Surfaces.
     pub count: usize,
-    /// Mean of the asperity model, of boundary elements, and mean and standard deviation of the ratio, of each compared quantity.
+    /// Mean of the asperity model, of boundary elements, and mean and standard deviation of the ratio, of
+    /// each compared quantity.
     pub quantities: [[Option<f64>; 4]; 3],
 }
 
@@ -102,9 +126,11 @@ pub struct MethodPair {
 /// # Errors
 /// If the table lacks a column.
 pub fn method_pairs(methods: &Frame) -> Result<Vec<MethodPair>, StatsError> {
-    let (first, second, loads) = (methods.text("asperities_case_id")?, methods.text("elements_case_id")?, methods.f64("max_load")?);
+    let (first, second, loads) =
+        (methods.text("asperities_case_id")?, methods.text("elements_case_id")?, methods.f64("max_load")?);
     let rows: Vec<usize> = (0..methods.row_count()).collect();
-    let same = |a: &usize, b: &usize| first[*a] == first[*b] && second[*a] == second[*b] && loads[*a] == loads[*b];
+    let same =
+        |a: &usize, b: &usize| first[*a] == first[*b] && second[*a] == second[*b] && loads[*a] == loads[*b];
     let mut pairs = Vec::new();
     for group in rows.chunk_by(same) {
         let row = group[0];
@@ -114,7 +140,9 @@ pub fn method_pairs(methods: &Frame) -> Result<Vec<MethodPair>, StatsError> {
                 let values = methods.f64_or_null(&format!("{column}_{end}"))?;
                 Ok(Sample::of(&group.iter().filter_map(|row| values[*row]).collect::<Vec<f64>>()).mean)
             };
-            let one = |end: &str| -> Result<Option<f64>, StatsError> { Ok(methods.f64_or_null(&format!("{column}_ratio_{end}"))?[row]) };
+            let one = |end: &str| -> Result<Option<f64>, StatsError> {
+                Ok(methods.f64_or_null(&format!("{column}_ratio_{end}"))?[row])
+            };
             *quantity = [mean("asperities")?, mean("elements")?, one("mean")?, one("sd")?];
         }
         let cases = [first[row], second[row]].map(str::to_owned);
@@ -138,7 +166,8 @@ pub fn methods_summary(cases: &Frame, methods: &Frame) -> Result<String, StatsEr
         return Ok(String::new());
     }
     let names = names_of_pairs(cases, &pairs)?;
-    let mut text = format!("{HEADER}{:<38}{:>8}{:>4}{:>10}{:>10}{:>10}\n", "case", "F_max", "n", "A", "F_po", "Θ");
+    let mut text =
+        format!("{HEADER}{:<38}{:>8}{:>4}{:>10}{:>10}{:>10}\n", "case", "F_max", "n", "A", "F_po", "Θ");
     for (pair, name) in pairs.iter().zip(&names) {
         let [area, pull_off, loss] = pair.quantities.map(|[.., mean, sd]| ratio(mean, sd));
         let name: String = name.chars().take(37).collect();
@@ -161,7 +190,8 @@ pub fn names_of_pairs(cases: &Frame, pairs: &[MethodPair]) -> Result<Vec<String>
     let name = |at: usize| {
         let mut parts: Vec<String> = Vec::new();
         for row in [2 * at, 2 * at + 1] {
-            let said = differing.iter().filter(|parameter| parameter.name != "method" && !parameter.is_absent(row));
+            let said =
+                differing.iter().filter(|parameter| parameter.name != "method" && !parameter.is_absent(row));
             for part in said.map(|parameter| parameter.named(row)) {
                 if !parts.contains(&part) {
                     parts.push(part);

@@ -1,7 +1,8 @@
 //! Statistics: means, standard deviations and mean curves from the steps of many cycles.
 //!
-//! Tables are read and checked by the store, and grouped by Polars. Every sum is taken here, in the order of the realizations, so that the tables
-//! have the same bytes with any number of threads. This module is independent of the physics: the analytical estimates of each cycle are given to it.
+//! Tables are read and checked by the store, and grouped by Polars. Every sum is taken here, in the order of
+//! the realizations, so that the tables have the same bytes with any number of threads. This module is
+//! independent of the physics: the analytical estimates of each cycle are given to it.
 
 mod avalanches;
 mod cases;
@@ -69,8 +70,8 @@ pub struct CaseInput {
     pub planned_count: usize,
     /// Number of failed realizations.
     pub failed_count: usize,
-    /// Columns of the table `realizations` that depend on the surface and the material alone: one list per surface whose cycle is done or failed. Empty if
-    /// only finished cycles count.
+    /// Columns of the table `realizations` that depend on the surface and the material alone: one list per
+    /// surface whose cycle is done or failed. Empty if only finished cycles count.
     pub surfaces: Vec<Given>,
 }
 
@@ -99,7 +100,8 @@ pub struct CycleInput {
     pub loss_dalvi_per_area_j: f64,
     /// Energy dissipated by crack-front pinning over the nominal area \[J\]; nothing where that is undefined.
     pub loss_pinning_per_area_j: Option<f64>,
-    /// Further columns that depend on the load reversal, by its load; and `resolution_j`, the dissipated energy below which Θ is not resolved \[J\].
+    /// Further columns that depend on the load reversal, by its load; and `resolution_j`, the dissipated
+    /// energy below which Θ is not resolved \[J\].
     pub at_max_load: Vec<(f64, Given)>,
     /// Every column of the table `realizations` that follows neither from the steps nor from the case:
     /// numbers of asperities, moments, Tabor parameters. An absent one is null, and an error where the table

@@ -1,7 +1,9 @@
-//! Expected error of the asperity model: its results over those of boundary elements, by the ratio `U_el/Δγ` of the surface.
+//! Expected error of the asperity model: its results over those of boundary elements, by the ratio `U_el/Δγ`
+//! of the surface.
 //!
-//! The table is the result of `pipelines/validity.toml`, reduced by `tests/reference/validity.py`. Its heading states the versions of both methods that
-//! made it (`# versions:`), and later versions with which it was compared or not (`# later:`).
+//! The table is the result of `pipelines/validity.toml`, reduced by `tests/reference/validity.py`. Its
+//! heading states the versions of both methods that made it (`# versions:`), and later versions with which it
+//! was compared or not (`# later:`).
 
 use super::rows::Value;
 use super::{CaseInput, Given, Limit};
@@ -13,7 +15,8 @@ const TABLE: &str = include_str!("model_error.csv");
 /// Columns of the table `cases`: contact area, pull-off force, dissipated energy.
 pub(super) const COLUMNS: [&str; 3] = ["area_model_ratio", "pull_off_model_ratio", "loss_model_ratio"];
 
-/// Ratios of area, pull-off force and dissipated energy; nothing where the surfaces differ by more than the mean.
+/// Ratios of area, pull-off force and dissipated energy; nothing where the surfaces differ by more than the
+/// mean.
 type Ratios = [Option<f64>; 3];
 
 /// A row: coalescence rule, `ln(U_el/Δγ)`, and the ratios.
@@ -35,11 +38,16 @@ fn versions(of: &str) -> Option<[u32; 2]> {
 pub(super) fn outdated() -> Option<String> {
     let present = [asperities_version(), ELEMENTS_VERSION];
     let made = versions("# versions:");
-    let shown =
-        |[asperities, elements]: [u32; 2]| format!("version {asperities} of the asperity model and {elements} of boundary elements");
+    let shown = |[asperities, elements]: [u32; 2]| {
+        format!("version {asperities} of the asperity model and {elements} of boundary elements")
+    };
     let text = made.map_or_else(|| "unknown versions".to_owned(), shown);
-    (made != Some(present))
-        .then(|| format!("The table of these ratios was made with {text}; this program has {} and {}.", present[0], present[1]))
+    (made != Some(present)).then(|| {
+        format!(
+            "The table of these ratios was made with {text}; this program has {} and {}.",
+            present[0], present[1]
+        )
+    })
 }
 
 fn row(line: &'static str) -> Option<Row> {
@@ -50,7 +58,8 @@ fn row(line: &'static str) -> Option<Row> {
     Some((coalescence, ratio.ln(), [number(), number(), number()]))
 }
 
-/// Ratios of the asperity model with a coalescence rule to boundary elements at `U_el/Δγ`, linear in its logarithm between the rows of the table; nothing outside.
+/// Ratios of the asperity model with a coalescence rule to boundary elements at `U_el/Δγ`, linear in its
+/// logarithm between the rows of the table; nothing outside.
 pub(super) fn model_error(coalescence: &str, persson_tosatti: f64) -> Option<Ratios> {
     let at = persson_tosatti.ln();
     let rows: Vec<&Row> = ROWS.iter().filter(|row| row.0 == coalescence).collect();
@@ -59,15 +68,26 @@ pub(super) fn model_error(coalescence: &str, persson_tosatti: f64) -> Option<Rat
     Some([0, 1, 2].map(|k| pair[0].2[k].zip(pair[1].2[k]).map(|(low, high)| low + part * (high - low))))
 }
 
-/// The columns of a row of the table `cases`; missing without elastic interaction, for boundary elements, for an anisotropic texture and outside the table.
+/// The columns of a row of the table `cases`; missing without elastic interaction, for boundary elements, for
+/// an anisotropic texture and outside the table.
 pub(super) fn columns(row: &Given, case: &CaseInput) -> Given {
-    let word = |column: &str| case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.text());
-    let number = |column: &str| row.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.number());
+    let word = |column: &str| {
+        case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.text())
+    };
+    let number =
+        |column: &str| row.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.number());
     let is_isotropic = !Limit::of("texture").is_some_and(|limit| limit.is_passed(number(limit.column)));
     let ratio = number("persson_tosatti_realised_mean").filter(|_| is_isotropic);
     let interacting = word("interaction").filter(|interaction| *interaction != "none");
-    let found = interacting.and(word("coalescence")).zip(ratio).and_then(|(coalescence, ratio)| model_error(coalescence, ratio));
-    COLUMNS.iter().enumerate().map(|(k, name)| ((*name).to_owned(), Value::from(found.and_then(|ratios| ratios[k])))).collect()
+    let found = interacting
+        .and(word("coalescence"))
+        .zip(ratio)
+        .and_then(|(coalescence, ratio)| model_error(coalescence, ratio));
+    COLUMNS
+        .iter()
+        .enumerate()
+        .map(|(k, name)| ((*name).to_owned(), Value::from(found.and_then(|ratios| ratios[k]))))
+        .collect()
 }
 
 #[cfg(test)]
@@ -75,8 +95,10 @@ mod tests {
     use super::{ROWS, model_error, outdated, versions};
     use crate::campaign::{ELEMENTS_VERSION, asperities_version};
 
-    /// A version that moves requires the table: run `pipelines/validity.toml` and `tests/reference/validity.py`. If the ratios do not change, or if there is
-    /// no time, the line `# later:` of the heading has the present versions and the reason; a run then prints the versions that made the table.
+    /// A version that moves requires the table: run
+    /// `pipelines/validity.toml` and `tests/reference/validity.py`. If the ratios do not change, or if there
+    /// is no time, the line `# later:` of the heading has the present versions and the reason; a run then
+    /// prints the versions that made the table.
     #[test]
     fn law_the_table_states_the_present_versions() {
         let present = Some([asperities_version(), ELEMENTS_VERSION]);
@@ -88,7 +110,8 @@ mod tests {
         assert_eq!(outdated().is_none(), made == present);
     }
 
-    /// Between two rows the ratios lie between theirs, at a row they are its own, and outside the table there are none.
+    /// Between two rows the ratios lie between theirs, at a row they are its own, and outside the table there
+    /// are none.
     #[test]
     fn law_ratios_are_those_of_the_table() {
         let merge: Vec<_> = ROWS.iter().filter(|row| row.0 == "merge").collect();
@@ -98,7 +121,10 @@ mod tests {
         for k in 0..3 {
             let mean = first.2[k].zip(second.2[k]).map(|(low, high)| 0.5 * (low + high));
             let found = middle.and_then(|ratios| ratios[k]);
-            assert!(found.zip(mean).is_some_and(|(found, mean)| (found - mean).abs() < 1e-12), "{found:?} and {mean:?}");
+            assert!(
+                found.zip(mean).is_some_and(|(found, mean)| (found - mean).abs() < 1e-12),
+                "{found:?} and {mean:?}"
+            );
         }
         assert_eq!(model_error("merge", 1e-3), None);
         assert_eq!(model_error("merge", 1e6), None);

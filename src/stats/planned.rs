@@ -24,7 +24,8 @@ pub struct Planned {
     pub failure: Option<String>,
 }
 
-/// Joins planned cycles to the parameters of their cases; rows are ordered by case and realization, whatever the order of the inputs.
+/// Joins planned cycles to the parameters of their cases; rows are ordered by case and realization, whatever
+/// the order of the inputs.
 ///
 /// # Errors
 /// If a cycle names an unknown case, or a required parameter of a case was not given.
@@ -34,7 +35,8 @@ pub fn planned(cases: &[CaseInput], cycles: &[Planned]) -> Result<Frame, StatsEr
     ordered.sort_by(|a, b| a.case_id.cmp(&b.case_id).then(a.realization.cmp(&b.realization)));
     let mut rows = Rows::of(&CYCLES);
     for cycle in ordered {
-        let unknown = || StatsError::UnknownCase { case_id: cycle.case_id.clone(), realization: cycle.realization };
+        let unknown =
+            || StatsError::UnknownCase { case_id: cycle.case_id.clone(), realization: cycle.realization };
         let case = *by_id.get(cycle.case_id.as_str()).ok_or_else(unknown)?;
         let columns: [(&str, Value); 6] = [
             ("realization", cycle.realization.into()),

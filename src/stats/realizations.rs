@@ -17,7 +17,8 @@ use crate::store::Frame;
 /// branch; it is zero without tension.
 ///
 /// # Errors
-/// If a table of steps cannot be read or holds no such branch, if a cycle names an unknown case, or if a required column was not given.
+/// If a table of steps cannot be read or holds no such branch, if a cycle names an unknown case, or if a
+/// required column was not given.
 pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame, StatsError> {
     let mut ordered: Vec<(&str, f64, i64, Given, &CaseInput, &CycleInput)> = Vec::new();
     for input in cycles {
@@ -58,13 +59,17 @@ pub fn results(input: &CycleInput) -> Result<Vec<(f64, Given)>, StatsError> {
 
 /// The case that a cycle names.
 pub(super) fn case_of<'a>(cases: &'a [CaseInput], input: &CycleInput) -> Result<&'a CaseInput, StatsError> {
-    let unknown = || StatsError::UnknownCase { case_id: input.case_id.clone(), realization: input.realization };
+    let unknown =
+        || StatsError::UnknownCase { case_id: input.case_id.clone(), realization: input.realization };
     cases.iter().find(|case| case.case_id == input.case_id).ok_or_else(unknown)
 }
 
 /// The columns that name a case.
 pub(super) fn identity(case: &CaseInput) -> Given {
-    vec![("case_id".to_owned(), case.case_id.as_str().into()), ("sweep".to_owned(), case.sweep.as_str().into())]
+    vec![
+        ("case_id".to_owned(), case.case_id.as_str().into()),
+        ("sweep".to_owned(), case.sweep.as_str().into()),
+    ]
 }
 
 /// The columns of what the events of a loop lost.
@@ -72,24 +77,31 @@ fn parts(lost: &Lost, input: &CycleInput) -> Given {
     let branches = [("loading", lost.loading), ("unloading", lost.unloading)];
     let kinds = EVENT_KINDS.iter().copied().zip(lost.kinds);
     let both = |(part, energy_j): (&str, f64)| {
-        [(format!("dissipated_{part}"), (energy_j / input.energy_scale_j).into()), (format!("dissipated_{part}_j"), energy_j.into())]
+        [
+            (format!("dissipated_{part}"), (energy_j / input.energy_scale_j).into()),
+            (format!("dissipated_{part}_j"), energy_j.into()),
+        ]
     };
     branches.into_iter().chain(kinds).flat_map(both).collect()
 }
 
 /// Coalescence energy over Θ, `|E_cover + E_uncover + E_merge + E_split|/|Θ|`; null for Θ = 0.
 ///
-/// Energies that cancel along the loop, such as those of merging and of the later splitting, do not count. The energies of all events sum to Θ. So the share is
-/// between 0 and 1, up to the energy-balance error, if neither the events of coalescence nor the other ones gain energy in sum.
+/// Energies that cancel along the loop, such as those of merging and of the later splitting, do not count.
+/// The energies of all events sum to Θ. So the share is between 0 and 1, up to the energy-balance error, if
+/// neither the events of coalescence nor the other ones gain energy in sum.
 fn absorption_share(lost: &Lost, results: &Given) -> Option<f64> {
     let loss = results.iter().find(|(name, _)| name == "loss_j").and_then(|(_, value)| value.number())?;
     let kinds = EventKind::ALL.into_iter().zip(lost.kinds).filter(|(kind, _)| kind.group().is_coalescence());
     (loss != 0.0).then(|| (kinds.map(|(_, energy)| energy).sum::<f64>() / loss).abs())
 }
 
-/// Resolution of Θ over |Θ|; nothing for Θ = 0. The energy balance of boundary elements is exact, so that its error is one of Θ.
+/// Resolution of Θ over |Θ|; nothing for Θ = 0. The energy balance of boundary elements is exact, so that its
+/// error is one of Θ.
 fn uncertainty([loss_j, imbalance_j]: [f64; 2], max_load: f64, input: &CycleInput) -> Option<f64> {
-    let number = |given: &Given, name: &str| given.iter().find(|(known, _)| known == name).and_then(|(_, value)| value.number());
+    let number = |given: &Given, name: &str| {
+        given.iter().find(|(known, _)| known == name).and_then(|(_, value)| value.number())
+    };
     let resolution_j = input.at(max_load).and_then(|given| number(given, "resolution_j"))?;
     let error_j = number(&input.surface, "elements_per_wavelength").map_or(0.0, |_| imbalance_j);
     (loss_j != 0.0).then(|| resolution_j.max(error_j) / loss_j.abs())
@@ -105,11 +117,18 @@ fn pull_off_n(unloading: &Branch, input: &CycleInput) -> Option<f64> {
 
 /// Energy-balance error over |Θ|; without adhesion, energy of the events of loading over the work.
 fn audit_gap([loss_j, imbalance_j]: [f64; 2], on_loading_j: f64, work_j: f64) -> Option<f64> {
-    let (imbalance_j, compared_j) = if loss_j == 0.0 { (on_loading_j.abs(), work_j) } else { (imbalance_j, loss_j.abs()) };
+    let (imbalance_j, compared_j) =
+        if loss_j == 0.0 { (on_loading_j.abs(), work_j) } else { (imbalance_j, loss_j.abs()) };
     (compared_j > 0.0).then(|| imbalance_j / compared_j)
 }
 
-fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, input: &CycleInput) -> Result<Given, StatsError> {
+fn reduce(
+    loading: &Branch,
+    turning: usize,
+    unloading: &Branch,
+    max_load: f64,
+    input: &CycleInput,
+) -> Result<Given, StatsError> {
     let lacking = |what: &str| fault(&input.steps, format!("lack {what} at the turning point {max_load}"));
     let at = |values: &[f64]| values.get(turning).copied().ok_or_else(|| lacking("a number"));
     let count_at = |values: &[i64]| values.get(turning).copied().unwrap_or_default();
@@ -118,7 +137,12 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     };
     let at_reversal = at(&loading.work_j)?;
     let loss_j = at_reversal + work_back;
-    let works = loading.work_j.iter().take(turning + 1).copied().chain(unloading.work_j.iter().map(|work| at_reversal + work));
+    let works = loading
+        .work_j
+        .iter()
+        .take(turning + 1)
+        .copied()
+        .chain(unloading.work_j.iter().map(|work| at_reversal + work));
     let work_j = works.map(f64::abs).fold(0.0, f64::max);
     let loss = loss_j / input.energy_scale_j;
     let area = at(&loading.area)?;
@@ -128,7 +152,8 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
     let loss_dk = dk(input.loss_dk_per_area_j);
     let on_loading: f64 = loading.dissipated_j.iter().take(turning + 1).sum();
     // Without adhesion the events of loading are undone on unloading, and nothing but rounding remains.
-    let dissipated_j = if loss_j == 0.0 { 0.0 } else { on_loading + unloading.dissipated_j.iter().sum::<f64>() };
+    let dissipated_j =
+        if loss_j == 0.0 { 0.0 } else { on_loading + unloading.dissipated_j.iter().sum::<f64>() };
     let energies = [loss_j, (loss_j - dissipated_j).abs()];
     // The resolution of a negative energy is at least its magnitude: it is no result.
     let is_resolved = loss_j >= 0.0;
@@ -148,14 +173,21 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("pull_off_load", pull_off.map(|pull_off| pull_off * load_unit).into()),
         ("pull_off_load_n", pull_off.into()),
         ("area_at_max_load", area.into()),
-        // The sum and the union of the discs are both in m²; A0 need not be known to scale the one like the other.
-        ("area_union_at_max_load", union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 }).into()),
+        // The sum and the union of the discs are both in m²; A0 need not be known to scale the one like the
+        // other.
+        (
+            "area_union_at_max_load",
+            union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 }).into(),
+        ),
         ("penetration_at_max_load", at(&loading.penetration)?.into()),
         ("loss", is_resolved.then_some(loss).into()),
         ("loss_j", is_resolved.then_some(loss_j).into()),
         ("loss_dk", loss_dk.into()),
         ("loss_dk_realised", dk(input.loss_dk_realised_per_area_j).into()),
-        ("loss_pinning", input.loss_pinning_per_area_j.map(|slope| slope * area / input.energy_scale_j).into()),
+        (
+            "loss_pinning",
+            input.loss_pinning_per_area_j.map(|slope| slope * area / input.energy_scale_j).into(),
+        ),
         ("loss_dalvi", (input.loss_dalvi_per_area_j * area / input.energy_scale_j).into()),
         ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0 && is_resolved).map(|dk| loss / dk).into()),
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
@@ -169,7 +201,10 @@ fn reduce(loading: &Branch, turning: usize, unloading: &Branch, max_load: f64, i
         ("unconverged_count", converged.filter(|converged| !**converged).count().into()),
         ("held_count", held.into()),
         ("touching_share", (contacts > 0).then(|| touching as f64 / contacts as f64).into()),
-        ("covered_share", (contacts + covered > 0).then(|| covered as f64 / (contacts + covered) as f64).into()),
+        (
+            "covered_share",
+            (contacts + covered > 0).then(|| covered as f64 / (contacts + covered) as f64).into(),
+        ),
     ];
     Ok(columns.into_iter().map(|(name, value)| (name.to_owned(), value)).collect())
 }

@@ -86,10 +86,16 @@ impl Rows {
         Self { table, rows: Vec::new() }
     }
 
-    /// Adds a row: each column takes the first value of its name, and is missing if there is none. Values of no column of this table are left out.
+    /// Adds a row: each column takes the first value of its name, and is missing if there is none. Values of
+    /// no column of this table are left out.
     pub(super) fn push(&mut self, sources: &[&Given]) {
-        let find = |name: &str| sources.iter().flat_map(|given| given.iter()).find(|(known, _)| known == name);
-        let row = self.table.columns.iter().map(|column| find(column.name).map_or(Value::Missing, |(_, value)| value.clone()));
+        let find =
+            |name: &str| sources.iter().flat_map(|given| given.iter()).find(|(known, _)| known == name);
+        let row = self
+            .table
+            .columns
+            .iter()
+            .map(|column| find(column.name).map_or(Value::Missing, |(_, value)| value.clone()));
         self.rows.push(row.collect());
     }
 
@@ -101,12 +107,16 @@ impl Rows {
             // A value of another kind becomes missing, and is then refused where the column must be complete.
             let data = match column.kind {
                 Kind::F64 => ColumnData::F64(values.map(Value::number).collect()),
-                Kind::I64 => {
-                    ColumnData::I64(values.map(|value| if let Value::Whole(whole) = value { Some(*whole) } else { None }).collect())
-                }
-                Kind::Text => {
-                    ColumnData::Text(values.map(|value| if let Value::Word(word) = value { Some(word.clone()) } else { None }).collect())
-                }
+                Kind::I64 => ColumnData::I64(
+                    values
+                        .map(|value| if let Value::Whole(whole) = value { Some(*whole) } else { None })
+                        .collect(),
+                ),
+                Kind::Text => ColumnData::Text(
+                    values
+                        .map(|value| if let Value::Word(word) = value { Some(word.clone()) } else { None })
+                        .collect(),
+                ),
                 Kind::Bool => ColumnData::Bool(values.map(|_| None).collect()),
             };
             frame = frame.with(column.name, data);

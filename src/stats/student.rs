@@ -2,7 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Fewer samples than this are shown one by one: an interval of so few says more about the assumed distribution than about them.
+/// Fewer samples than this are shown one by one: an interval of so few says more about the assumed
+/// distribution than about them.
 pub const FEW: usize = 5;
 
 /// Statistics of a quantity from its independent samples.
@@ -14,12 +15,14 @@ pub struct Sample {
     pub mean: Option<f64>,
     /// Standard deviation with n − 1; nothing with fewer than two samples.
     pub sd: Option<f64>,
-    /// Half the width of the 95 % interval of the mean, `t(0.975, n − 1)·sd/√n`; nothing with fewer than two samples.
+    /// Half the width of the 95 % interval of the mean, `t(0.975, n − 1)·sd/√n`; nothing with fewer than two
+    /// samples.
     pub ci95: Option<f64>,
 }
 
 impl Sample {
-    /// Summarises values, adding them in the order given: the caller fixes the order, and so the last bit of the sums.
+    /// Summarises values, adding them in the order given: the caller fixes the order, and so the last bit of
+    /// the sums.
     pub fn of(values: &[f64]) -> Self {
         let count = values.len();
         if count == 0 {
@@ -39,9 +42,10 @@ impl Sample {
 
 /// Quantile of Student's t distribution for a whole number of degrees of freedom.
 ///
-/// With `t = √ν tan θ`, `P(|T| < t)` is a finite sum of powers of `cos θ` (Abramowitz and Stegun, 26.7.3 and 26.7.4), so it is
-/// exact up to rounding; bisection in θ inverts it. Relative error below 1e-12 for `ν ≤ 1000` and probabilities from 0.6 to 0.999.
-/// Nothing if `ν = 0` or the probability is not inside (0, 1).
+/// With `t = √ν tan θ`, `P(|T| < t)` is a finite sum of powers of `cos θ` (Abramowitz and Stegun, 26.7.3 and
+/// 26.7.4), so it is exact up to rounding; bisection in θ inverts it. Relative error below 1e-12 for
+/// `ν ≤ 1000` and probabilities from 0.6 to 0.999. Nothing if `ν = 0` or the probability is not inside (0,
+/// 1).
 pub fn t_quantile(probability: f64, degrees_of_freedom: usize) -> Option<f64> {
     if degrees_of_freedom == 0 || !(probability > 0.0 && probability < 1.0) {
         return None;

@@ -27,7 +27,8 @@ A: contact area at F_max over A0. Θ: dissipated energy over E* A0 h_rms.
 const REFERENCE: &str = "*: reference case. change: relative to it, where all realizations finished.";
 
 /// Heading, and column of the table `cases` without its ending.
-const RESULTS: [(&str, &str); 4] = [("A", "area_at_max_load"), ("F_po", "pull_off_load"), ("Θ", "loss"), ("Θ/Θ_DK", "loss_ratio_dk")];
+const RESULTS: [(&str, &str); 4] =
+    [("A", "area_at_max_load"), ("F_po", "pull_off_load"), ("Θ", "loss"), ("Θ/Θ_DK", "loss_ratio_dk")];
 
 /// Magnitude from which numbers are not written in full.
 const LONG: f64 = 1e5;
@@ -48,8 +49,8 @@ impl Notation {
     fn of(heading: &str, cells: &[MeanSd], width: usize) -> Self {
         let exponent = column_exponent(cells.iter().filter_map(|(mean, _)| *mean));
         let over = Self::Over(exponent);
-        let is_readable =
-            over.heading(heading).chars().count() <= width && cells.iter().all(|cell| fixed(*cell, exponent, width).is_some());
+        let is_readable = over.heading(heading).chars().count() <= width
+            && cells.iter().all(|cell| fixed(*cell, exponent, width).is_some());
         if is_readable { over } else { Self::Exponents }
     }
 
@@ -78,8 +79,9 @@ pub enum Shown {
     All,
 }
 
-/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases, the reference case first, the others in the order of the spec, and
-/// its verdict. `methods` is the table of both methods on the same surfaces.
+/// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases, the reference
+/// case first, the others in the order of the spec, and its verdict. `methods` is the table of both methods
+/// on the same surfaces.
 ///
 /// # Errors
 /// If a table lacks one of its columns.
@@ -92,7 +94,8 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
         let rows = listing_of(cases, &name)?;
         let mut columns = Vec::new();
         for ((heading, name), width) in RESULTS.into_iter().zip(&WIDTHS[3..]) {
-            let cells = rows.iter().map(|listed| mean_sd(cases, name, listed.row)).collect::<Result<Vec<_>, _>>()?;
+            let cells =
+                rows.iter().map(|listed| mean_sd(cases, name, listed.row)).collect::<Result<Vec<_>, _>>()?;
             columns.push((heading, Notation::of(heading, &cells, width - 1)));
         }
         let headings = columns.iter().map(|(heading, notation)| notation.heading(heading)).collect();
@@ -102,7 +105,11 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
             lines.extend(case_lines(cases, listed, &columns)?);
         }
         let rows: Vec<usize> = rows.iter().map(|listed| listed.row).collect();
-        lines.extend(verdicts(cases, methods, &rows)?.iter().flat_map(|sentence| wrapped(&format!("Verdict: {sentence}"))));
+        lines.extend(
+            verdicts(cases, methods, &rows)?
+                .iter()
+                .flat_map(|sentence| wrapped(&format!("Verdict: {sentence}"))),
+        );
     }
     let mut head = vec![HEADER];
     head.extend(compared.then_some(REFERENCE));
@@ -122,7 +129,8 @@ pub fn verdicts_of_sweeps(cases: &Frame, methods: Option<&Frame>) -> Result<Vec<
     let (names, mut all) = (sweeps(cases)?, Vec::new());
     for name in &names {
         let rows: Vec<usize> = listing_of(cases, name)?.iter().map(|listed| listed.row).collect();
-        let place = if names.len() > 1 && !name.is_empty() { format!("Sweep {name}") } else { "Verdict".to_owned() };
+        let place =
+            if names.len() > 1 && !name.is_empty() { format!("Sweep {name}") } else { "Verdict".to_owned() };
         all.extend(verdicts(cases, methods, &rows)?.iter().map(|sentence| format!("{place}: {sentence}")));
     }
     Ok(all)
@@ -136,9 +144,17 @@ fn mean_sd(cases: &Frame, name: &str, row: usize) -> Result<MeanSd, StatsError> 
     Ok((value(cases, &format!("{name}_mean"), row)?, value(cases, &format!("{name}_sd"), row)?))
 }
 
-fn case_lines(cases: &Frame, listed: &Listed, columns: &[(&str, Notation)]) -> Result<Vec<String>, StatsError> {
-    let count = |name: &str, row: usize| -> Result<i64, StatsError> { Ok(cases.i64(name)?.get(row).copied().unwrap_or_default()) };
-    let counts = |row: usize| -> Result<[i64; 2], StatsError> { Ok([count("done_count", row)?, count("planned_count", row)?]) };
+fn case_lines(
+    cases: &Frame,
+    listed: &Listed,
+    columns: &[(&str, Notation)],
+) -> Result<Vec<String>, StatsError> {
+    let count = |name: &str, row: usize| -> Result<i64, StatsError> {
+        Ok(cases.i64(name)?.get(row).copied().unwrap_or_default())
+    };
+    let counts = |row: usize| -> Result<[i64; 2], StatsError> {
+        Ok([count("done_count", row)?, count("planned_count", row)?])
+    };
     let load = value(cases, "max_load", listed.row)?.map_or_else(String::new, |load| significant(load, 4));
     let [done, planned] = counts(listed.row)?;
     // Means of different surfaces differ by the surfaces too.
@@ -166,14 +182,16 @@ fn four(cells: Vec<String>) -> [String; 4] {
     cells.try_into().unwrap_or_default()
 }
 
-/// The relative difference of a mean from that of the reference case, in percent; nothing where the latter is zero.
+/// The relative difference of a mean from that of the reference case, in percent; nothing where the latter is
+/// zero.
 fn change(own: f64, reference: f64) -> Option<String> {
     let percent = 100.0 * (own - reference) / reference.abs();
     let text = if percent.abs() < 1e4 { format!("{percent:+.1}") } else { format!("{percent:+.1e}") };
     percent.is_finite().then(|| if text == "-0.0" || text == "+0.0" { "0.0".to_owned() } else { text })
 }
 
-/// Expected ratios of the results of the asperity model to those of boundary elements, as a sentence; nothing without an expectation.
+/// Expected ratios of the results of the asperity model to those of boundary elements, as a sentence; nothing
+/// without an expectation.
 ///
 /// # Errors
 /// If the table lacks a column.
@@ -181,15 +199,18 @@ pub fn expected_ratios(cases: &Frame) -> Result<Option<String>, StatsError> {
     let mut parts = Vec::new();
     for (name, column) in ["A", "F_po", "Θ"].into_iter().zip(COLUMNS) {
         let values: Vec<f64> = cases.f64_or_null(column)?.iter().copied().flatten().collect();
-        let [low, high] = [f64::min, f64::max].map(|least: fn(f64, f64) -> f64| values.iter().copied().reduce(least));
+        let [low, high] =
+            [f64::min, f64::max].map(|least: fn(f64, f64) -> f64| values.iter().copied().reduce(least));
         let Some((low, high)) = low.zip(high) else { continue };
         let (low, high) = (format!("{low:.2}"), format!("{high:.2}"));
         parts.push(if low == high { format!("{name} {low}") } else { format!("{name} {low} to {high}") });
     }
     let parts = parts.join(", ");
     let outdated = outdated().map_or_else(String::new, |text| format!(" {text}"));
-    let text =
-        format!("Expected ratio of the asperity model to boundary elements: {parts} (U_el/Δγ of each case, guide: Validity).{outdated}");
+    let text = format!(
+        "Expected ratio of the asperity model to boundary elements: {parts} (U_el/Δγ of each case, guide: \
+         Validity).{outdated}"
+    );
     Ok((!parts.is_empty()).then_some(text))
 }
 
@@ -203,16 +224,23 @@ fn few_warnings(cases: &Frame) -> Result<Vec<String>, StatsError> {
     if all.is_empty() {
         return Ok(Vec::new());
     }
-    let (covered, other): (Vec<&Warning>, Vec<&Warning>) = all.iter().partition(|warning| IN_A_VERDICT.contains(&warning.kind.code));
+    let (covered, other): (Vec<&Warning>, Vec<&Warning>) =
+        all.iter().partition(|warning| IN_A_VERDICT.contains(&warning.kind.code));
     let row_count = cases.row_count();
     let line = |warning: &&Warning| {
         let head = format!("warning[{}]: {}", warning.kind.code, warning.kind.label);
-        let head = if warning.rows.len() == row_count { head } else { format!("{head} ({} of {row_count} rows)", warning.rows.len()) };
+        let head = if warning.rows.len() == row_count {
+            head
+        } else {
+            format!("{head} ({} of {row_count} rows)", warning.rows.len())
+        };
         let whole = format!("{head}: {}", warning.measured);
         if whole.chars().count() <= LINE { whole.replace('\u{a0}', " ") } else { head }
     };
-    let mut lines: Vec<String> = std::iter::once(String::new()).chain(other.iter().take(FEW - 1).map(line)).collect();
-    let left: Vec<&str> = other.iter().skip(FEW - 1).chain(&covered).map(|warning| warning.kind.code).collect();
+    let mut lines: Vec<String> =
+        std::iter::once(String::new()).chain(other.iter().take(FEW - 1).map(line)).collect();
+    let left: Vec<&str> =
+        other.iter().skip(FEW - 1).chain(&covered).map(|warning| warning.kind.code).collect();
     let last = |more: String| format!("{more}consequences and actions: report.html, or --verbose");
     let named = last(format!("Also {}; ", left.join(", ")));
     lines.push(match left.len() {
@@ -240,13 +268,19 @@ fn warning_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
             String::new()
         } else if warning.rows.len() <= MOST_NAMED {
             let named = all.iter().filter(|listed| warning.rows.contains(&listed.row));
-            let names: Vec<String> =
-                named.map(|listed| format!("{}, F_max = {}", listed.label, loads[listed.row]).replace(" = ", "\u{a0}=\u{a0}")).collect();
+            let names: Vec<String> = named
+                .map(|listed| {
+                    format!("{}, F_max = {}", listed.label, loads[listed.row]).replace(" = ", "\u{a0}=\u{a0}")
+                })
+                .collect();
             format!(" ({})", names.join("; "))
         } else {
             format!(" ({} of {} rows)", warning.rows.len(), all.len())
         };
-        lines.extend(wrapped(&format!("warning[{}]: {}{place}: {}", warning.kind.code, warning.kind.label, warning.measured)));
+        lines.extend(wrapped(&format!(
+            "warning[{}]: {}{place}: {}",
+            warning.kind.code, warning.kind.label, warning.measured
+        )));
     }
     if !lines.is_empty() {
         lines.insert(0, String::new());
@@ -270,8 +304,8 @@ fn wrapped(paragraph: &str) -> Vec<String> {
     lines.into_iter().map(|line| cut(&line.replace('\u{a0}', " "), LINE)).collect()
 }
 
-/// A mean with its standard deviation over a power of ten, with three significant digits of the larger, or two where three are too wide; nothing where the mean
-/// would print as zero, or as a long number.
+/// A mean with its standard deviation over a power of ten, with three significant digits of the larger, or
+/// two where three are too wide; nothing where the mean would print as zero, or as a long number.
 fn fixed((mean, sd): MeanSd, exponent: i32, width: usize) -> Option<String> {
     let Some(mean) = mean.map(|mean| mean / 10f64.powi(exponent)) else { return Some("-".to_owned()) };
     let sd = sd.map(|sd| sd / 10f64.powi(exponent));
@@ -281,8 +315,10 @@ fn fixed((mean, sd): MeanSd, exponent: i32, width: usize) -> Option<String> {
     }
     let text = |digits: usize| {
         let places = decimals(largest, digits);
-        let is_lost = mean != 0.0 && format!("{:.places$}", mean.abs()).chars().all(|c| matches!(c, '0' | '.'));
-        let text = sd.map_or_else(|| format!("{mean:.places$}"), |sd| format!("{mean:.places$}±{sd:.places$}"));
+        let is_lost =
+            mean != 0.0 && format!("{:.places$}", mean.abs()).chars().all(|c| matches!(c, '0' | '.'));
+        let text =
+            sd.map_or_else(|| format!("{mean:.places$}"), |sd| format!("{mean:.places$}±{sd:.places$}"));
         Some(text).filter(|text| !is_lost && text.chars().count() <= width)
     };
     text(3).or_else(|| text(2))
@@ -299,7 +335,11 @@ fn fitting(mean: f64, sd: Option<f64>, width: usize) -> String {
 }
 
 /// Cells below the headings, after a label; a label that is too long for its column has lines of its own.
-fn labelled(label: &str, [load, count]: [String; 2], [area, pull_off, loss, ratio]: [String; 4]) -> Vec<String> {
+fn labelled(
+    label: &str,
+    [load, count]: [String; 2],
+    [area, pull_off, loss, ratio]: [String; 4],
+) -> Vec<String> {
     let cells = |label: String| line([label, load, count, area, pull_off, loss, ratio]);
     if label.chars().count() < WIDTHS[0] {
         return vec![cells(label.to_owned())];
@@ -329,5 +369,9 @@ fn line(cells: [String; 7]) -> String {
 }
 
 fn cut(text: &str, width: usize) -> String {
-    if text.chars().count() <= width { text.to_owned() } else { text.chars().take(width.saturating_sub(1)).chain(['…']).collect() }
+    if text.chars().count() <= width {
+        text.to_owned()
+    } else {
+        text.chars().take(width.saturating_sub(1)).chain(['…']).collect()
+    }
 }

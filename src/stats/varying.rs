@@ -50,9 +50,15 @@ impl Varying {
             Values::Numbers(numbers) => {
                 let known: Vec<f64> = numbers.iter().flatten().copied().collect();
                 let mut texts = labels_with_unit(name, &known).into_iter();
-                numbers.iter().map(|number| number.and_then(|_| texts.next()).unwrap_or_else(|| "?".to_owned())).collect()
+                numbers
+                    .iter()
+                    .map(|number| number.and_then(|_| texts.next()).unwrap_or_else(|| "?".to_owned()))
+                    .collect()
             }
-            Values::Words(words) => words.iter().map(|word| if word.is_empty() { "none".to_owned() } else { word.clone() }).collect(),
+            Values::Words(words) => words
+                .iter()
+                .map(|word| if word.is_empty() { "none".to_owned() } else { word.clone() })
+                .collect(),
         };
         let absent = vec![false; texts.len()];
         Self { name, symbol, label, values, texts, absent }
@@ -83,7 +89,8 @@ impl Varying {
     }
 }
 
-/// True if the values of a parameter differ: of one that only one method reads, between the rows of one method.
+/// True if the values of a parameter differ: of one that only one method reads, between the rows of one
+/// method.
 fn differ<T: PartialEq>(parameter: &Parameter, picked: &[T], same_method: &[usize]) -> bool {
     let first = |place: usize| if parameter.of_method { same_method[place] } else { 0 };
     (0..picked.len()).any(|place| picked[place] != picked[first(place)])
@@ -98,7 +105,9 @@ pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError
     let files = cases.text_or_null("surface_file")?;
     let measured = rows.iter().any(|row| files.get(*row).is_some_and(Option::is_some));
     let methods = cases.text_or_null("method")?;
-    let places = (0..rows.len()).map(|place| rows.iter().position(|row| methods.get(*row) == methods.get(rows[place])).unwrap_or(place));
+    let places = (0..rows.len()).map(|place| {
+        rows.iter().position(|row| methods.get(*row) == methods.get(rows[place])).unwrap_or(place)
+    });
     // The first row with the method of each row.
     let same_method: Vec<usize> = places.collect();
     // The size and roughness of a measured surface follow from its file and are not named.
@@ -106,11 +115,13 @@ pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError
     for parameter in parameters_by_rank().into_iter().filter(|parameter| !follows(parameter.column.name)) {
         let values = match cases.column(parameter.column.name)? {
             ColumnData::F64(all) => {
-                let picked: Vec<Option<f64>> = rows.iter().map(|row| all.get(*row).copied().flatten()).collect();
+                let picked: Vec<Option<f64>> =
+                    rows.iter().map(|row| all.get(*row).copied().flatten()).collect();
                 differ(parameter, &picked, &same_method).then_some(Values::Numbers(picked))
             }
             ColumnData::Text(all) => {
-                let picked: Vec<String> = rows.iter().map(|row| all.get(*row).cloned().flatten().unwrap_or_default()).collect();
+                let picked: Vec<String> =
+                    rows.iter().map(|row| all.get(*row).cloned().flatten().unwrap_or_default()).collect();
                 differ(parameter, &picked, &same_method).then_some(Values::Words(picked))
             }
             ColumnData::I64(_) | ColumnData::Bool(_) => None,

@@ -29,7 +29,8 @@ pub struct Point {
 pub struct Walk(pub Vec<Point>);
 
 impl Walk {
-    /// The first point at which the walk is at or below a load, or nothing if the load is above its start or never reached.
+    /// The first point at which the walk is at or below a load, or nothing if the load is above its start or
+    /// never reached.
     pub fn at(&self, load: f64) -> Option<Point> {
         let first = self.0.first()?;
         if load > first.load {
@@ -43,7 +44,11 @@ impl Walk {
         // Every earlier point is above `load` and this one is not, so the difference is never zero.
         let share = (before.load - load) / (before.load - after.load);
         let between = |from: f64, to: f64| from + share * (to - from);
-        Some(Point { load, area: between(before.area, after.area), penetration: between(before.penetration, after.penetration) })
+        Some(Point {
+            load,
+            area: between(before.area, after.area),
+            penetration: between(before.penetration, after.penetration),
+        })
     }
 
     /// The lowest load of the walk if it is a tension, and zero otherwise.
@@ -51,11 +56,12 @@ impl Walk {
         self.0.iter().fold(0.0, |least, point| point.load.min(least))
     }
 
-    /// The walk at every station: loads spaced evenly from `max_load` to zero, the same for every realization, and then evenly from zero
-    /// to this walk's own lowest load.
+    /// The walk at every station: loads spaced evenly from `max_load` to zero, the same for every
+    /// realization, and then evenly from zero to this walk's own lowest load.
     ///
-    /// Below zero each realization has a different end, its pull-off. On a common grid of loads the mean would there lose one realization after
-    /// another and jump each time; stations at equal fractions of each one's own tension keep them all, and the mean curve ends at the mean pull-off.
+    /// Below zero each realization has a different end, its pull-off. On a common grid of loads the mean
+    /// would there lose one realization after another and jump each time; stations at equal fractions of each
+    /// one's own tension keep them all, and the mean curve ends at the mean pull-off.
     pub fn stations(&self, max_load: f64) -> Vec<Option<Point>> {
         let tension = self.greatest_tension();
         let steps = (COMPRESSION_STATIONS - 1) as f64;
@@ -70,7 +76,8 @@ impl Walk {
     }
 }
 
-/// Fraction of each walk's own maximum tensile load at a station below zero load; nothing where the load is common to all walks.
+/// Fraction of each walk's own maximum tensile load at a station below zero load; nothing where the load is
+/// common to all walks.
 pub(super) fn tension_fraction(station: usize) -> Option<f64> {
     let below = (station + 1).checked_sub(COMPRESSION_STATIONS).filter(|below| *below > 0);
     below.map(|below| below as f64 / TENSION_STATIONS as f64)

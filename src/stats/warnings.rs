@@ -48,11 +48,16 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
         let values: Vec<f64> = rows.iter().filter_map(|row| numbers[*row]).collect();
         return Ok(measured_text(kind, *limit, &values));
     }
-    let (done, planned, failed) = (cases.i64("done_count")?, cases.i64("planned_count")?, cases.i64("failed_count")?);
+    let (done, planned, failed) =
+        (cases.i64("done_count")?, cases.i64("planned_count")?, cases.i64("failed_count")?);
     let not_reached = cases.i64_or_null("not_reached_count")?;
     // A case has a row for each load reversal, and its cycles count once.
     let ids = cases.text("case_id")?;
-    let firsts: Vec<usize> = rows.iter().copied().filter(|row| rows.iter().find(|other| ids[**other] == ids[*row]) == Some(row)).collect();
+    let firsts: Vec<usize> = rows
+        .iter()
+        .copied()
+        .filter(|row| rows.iter().find(|other| ids[**other] == ids[*row]) == Some(row))
+        .collect();
     let total = |counts: &[i64]| firsts.iter().map(|row| counts[*row]).sum::<i64>();
     if kind.code == "full_contact" {
         return Ok(kind.text.replace("{}", "1"));
@@ -65,7 +70,10 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
     if kind.code == "not_reached" {
         let unreached: i64 = rows.iter().map(|row| not_reached[*row].unwrap_or_default()).sum();
         let all: i64 = rows.iter().map(|row| done[*row] + not_reached[*row].unwrap_or_default()).sum();
-        return Ok(kind.text.replace("{}", &format!("{unreached} of {}", counted(usize::try_from(all).unwrap_or_default(), "loop"))));
+        return Ok(kind.text.replace(
+            "{}",
+            &format!("{unreached} of {}", counted(usize::try_from(all).unwrap_or_default(), "loop")),
+        ));
     }
     if kind.code != "incomplete" {
         let all = counted(usize::try_from(total(&planned)).unwrap_or_default(), "realization");
@@ -89,8 +97,11 @@ pub fn measured_text(kind: &Caution, limit: Limit, values: &[f64]) -> String {
 
 /// The interval of measured values: `76 %`, `76 to 87 %`, `0.99 to 1.02`.
 fn range(limit: Limit, values: &[f64]) -> String {
-    let number = |value: f64| if limit.is_fraction() { significant(100.0 * value, 2) } else { significant(value, 3) };
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    let number =
+        |value: f64| if limit.is_fraction() { significant(100.0 * value, 2) } else { significant(value, 3) };
+    let (low, high) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
     let (low, high) = (number(low), number(high));
     let text = if low == high { low } else { format!("{low} to {high}") };
     if limit.is_fraction() { format!("{text}\u{a0}%") } else { text }

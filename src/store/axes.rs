@@ -14,8 +14,8 @@ const AXES: [&str; 2] = ["x_m", "y_m"];
 
 /// An empty file whose root has the attribute [`CLASS`], as `tests/python/start.py` makes it.
 ///
-/// The HDF5 library accepts a dimension scale only if this attribute is a null-terminated string of 16 bytes, and the crate creates no such
-/// strings. Their type is therefore taken from this file.
+/// The HDF5 library accepts a dimension scale only if this attribute is a null-terminated string of 16 bytes,
+/// and the crate creates no such strings. Their type is therefore taken from this file.
 const START: &[u8] = include_bytes!("start.h5");
 /// Name and text of the attribute that marks a dimension scale.
 const CLASS: (&str, &str) = ("CLASS", "DIMENSION_SCALE");
@@ -46,9 +46,14 @@ pub(super) fn write(file: &File, kind: &Datatype, heights: &Dataset, length_m: f
         // While the dataset is open: closing it writes what is buffered, and reports no error.
         file.flush()?;
     }
-    let scales = AXES.map(|name| ObjectReference1::create(file, name).map(|scale| VarLenArray::from_slice(&[scale])));
+    let scales =
+        AXES.map(|name| ObjectReference1::create(file, name).map(|scale| VarLenArray::from_slice(&[scale])));
     let [x, y] = scales;
-    heights.new_attr::<VarLenArray<ObjectReference1>>().shape(2).create("DIMENSION_LIST")?.write(&[x?, y?])?;
+    heights
+        .new_attr::<VarLenArray<ObjectReference1>>()
+        .shape(2)
+        .create("DIMENSION_LIST")?
+        .write(&[x?, y?])?;
     let [x, y] = AXES.map(str::parse::<VarLenUnicode>);
     Ok(heights.new_attr::<VarLenUnicode>().shape(2).create("DIMENSION_LABELS")?.write(&[x?, y?])?)
 }
@@ -65,5 +70,9 @@ pub(super) fn are_as_written(file: &File, points: usize, length_m: f64) -> Resul
 
 /// Writes a null-terminated string as an attribute.
 fn write_short(axis: &Dataset, kind: &Datatype, name: &str, text: &str) -> Result<(), Cause> {
-    Ok(axis.new_attr_builder().empty_as(kind).create(name)?.write_scalar(&FixedAscii::<16>::from_ascii(text)?)?)
+    Ok(axis
+        .new_attr_builder()
+        .empty_as(kind)
+        .create(name)?
+        .write_scalar(&FixedAscii::<16>::from_ascii(text)?)?)
 }

@@ -5,7 +5,8 @@ use crate::schema::{EventCounts, EventKind, Table};
 use super::error::FrameError;
 use super::frame::{ColumnData, Frame, position, wrong_kind};
 
-/// A table that is being put together. What does not fit is reported by [`FrameBuilder::build`], the first fault first.
+/// A table that is being put together. What does not fit is reported by [`FrameBuilder::build`], the first
+/// fault first.
 #[derive(Debug)]
 pub struct FrameBuilder {
     table: &'static Table,
@@ -38,7 +39,8 @@ impl FrameBuilder {
         self.with(name, ColumnData::I64(values.into_iter().map(Into::into).collect()))
     }
 
-    /// Gives a column of counts or positions. One that no signed integer can hold becomes missing, and is refused where it may not be.
+    /// Gives a column of counts or positions. One that no signed integer can hold becomes missing, and is
+    /// refused where it may not be.
     #[must_use]
     pub fn count(self, name: &str, values: impl IntoIterator<Item = usize>) -> Self {
         let values = values.into_iter().map(|value| i64::try_from(value).ok());
@@ -49,9 +51,9 @@ impl FrameBuilder {
     #[must_use]
     pub fn counts(self, counts: impl IntoIterator<Item = EventCounts>) -> Self {
         let counts: Vec<EventCounts> = counts.into_iter().collect();
-        EventKind::ALL
-            .into_iter()
-            .fold(self, |frame, kind| frame.count(&format!("{}_count", kind.word()), counts.iter().map(|of| of[kind])))
+        EventKind::ALL.into_iter().fold(self, |frame, kind| {
+            frame.count(&format!("{}_count", kind.word()), counts.iter().map(|of| of[kind]))
+        })
     }
 
     /// Gives a column of truth values: `bool`, or `Option<bool>` where values may be missing.
@@ -68,7 +70,11 @@ impl FrameBuilder {
 
     /// Gives a column of words, some of which may be missing.
     #[must_use]
-    pub fn text_or_null<T: Into<String>>(self, name: &str, values: impl IntoIterator<Item = Option<T>>) -> Self {
+    pub fn text_or_null<T: Into<String>>(
+        self,
+        name: &str,
+        values: impl IntoIterator<Item = Option<T>>,
+    ) -> Self {
         let values = values.into_iter().map(|value| value.map(Into::into));
         self.with(name, ColumnData::Text(values.collect()))
     }
@@ -93,11 +99,14 @@ impl FrameBuilder {
         }
         if let Some((row, value)) = data.first_not_finite() {
             return Err(self.fault(format!(
-                "was given {value} in the column {name:?}, row {row}: every number must be finite, and a missing one is null"
+                "was given {value} in the column {name:?}, row {row}: every number must be finite, and a \
+                 missing one is null"
             )));
         }
         if let (false, Some(row)) = (column.nullable, data.first_missing()) {
-            return Err(self.fault(format!("lacks a value in the column {name:?}, row {row}: this column must be complete")));
+            return Err(self.fault(format!(
+                "lacks a value in the column {name:?}, row {row}: this column must be complete"
+            )));
         }
         self.columns[at] = Some(data);
         Ok(())
@@ -110,14 +119,15 @@ impl FrameBuilder {
     /// The table, if it fits.
     ///
     /// # Errors
-    /// If a column was unknown, given twice, of another kind, not finite, or null where it may not be; if one is
-    /// missing; or if they differ in length.
+    /// If a column was unknown, given twice, of another kind, not finite, or null where it may not be; if one
+    /// is missing; or if they differ in length.
     pub fn build(mut self) -> Result<Frame, FrameError> {
         if let Some(error) = self.error.take() {
             return Err(error);
         }
         let names = || self.table.columns.iter().map(|column| column.name);
-        let absent: Vec<&str> = names().zip(&self.columns).filter_map(|(name, data)| data.is_none().then_some(name)).collect();
+        let absent: Vec<&str> =
+            names().zip(&self.columns).filter_map(|(name, data)| data.is_none().then_some(name)).collect();
         if !absent.is_empty() {
             return Err(self.fault(format!("was not given: {}", absent.join(", "))));
         }

@@ -59,7 +59,9 @@ pub fn sum(path: &Path) -> io::Result<(u64, String)> {
 /// True if this is the name of a file that is being written, or was when the program was killed.
 #[must_use]
 pub fn is_temporary(path: &Path) -> bool {
-    path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.starts_with(TEMPORARY_PREFIX) && name.ends_with(TEMPORARY_SUFFIX))
+    path.file_name()
+        .and_then(OsStr::to_str)
+        .is_some_and(|name| name.starts_with(TEMPORARY_PREFIX) && name.ends_with(TEMPORARY_SUFFIX))
 }
 
 /// True if no process is writing this temporary file.
@@ -70,12 +72,12 @@ pub fn is_abandoned(path: &Path) -> bool {
 
 /// Writes a file with `write`, checks with `check` what can be read back, and puts it in place of `path`.
 ///
-/// `action` is what an error says was tried, as in "write the surface to". Both closures are given the path of the
-/// temporary file, which `write` finds empty.
+/// `action` is what an error says was tried, as in "write the surface to". Both closures are given the path of the temporary file, which `write`
+/// finds empty.
 ///
 /// # Errors
-/// If any step fails. The temporary file is then gone and what was at `path` is still there; only if the very last
-/// step fails, which makes the new name last through a power cut, is the new file in place.
+/// If any step fails. The temporary file is then gone and what was at `path` is still there; only if the very
+/// last step fails, which makes the new name last through a power cut, is the new file in place.
 pub fn commit(
     action: &str,
     path: &Path,
@@ -104,7 +106,11 @@ pub(super) fn commit_parts(action: &str, path: &Path, parts: &[&[u8]]) -> Result
             Ok(())
         },
         |temporary| {
-            if consists_of(temporary, parts)? { Ok(()) } else { Err("the content read back differs from the content written".into()) }
+            if consists_of(temporary, parts)? {
+                Ok(())
+            } else {
+                Err("the content read back differs from the content written".into())
+            }
         },
     )
 }

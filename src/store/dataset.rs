@@ -1,8 +1,9 @@
 //! Datasets of HDF5, opened only where the path to them and their values lie in the file itself.
 //!
-//! Virtual datasets, raw data in external storage and links to other files are refused before anything is read
-//! through them. Results are keyed by the content of the file that is named, so a value from another file could change
-//! without a trace; and another file can be a pipe that never ends, or a virtual dataset that contains itself.
+//! Virtual datasets, raw data in external storage and links to other files are refused before anything is
+//! read through them. Results are keyed by the content of the file that is named, so a value from another
+//! file could change without a trace; and another file can be a pipe that never ends, or a virtual dataset
+//! that contains itself.
 
 use hdf5_metno::plist::dataset_create::Layout;
 use hdf5_metno::{Dataset, File, Group, IndexType, IterationOrder, LinkType, LocationType};
@@ -15,7 +16,8 @@ const MOST_GROUPS: usize = 4096;
 const EXTERNAL: &str = "is reached through a link to another file";
 const SOFT: &str = "is reached through a soft link, in a file with links to other files";
 /// Help for heights in another file.
-const HELP: &str = "copy the heights into one file, as an ordinary dataset (h5repack, or h5py: f[\"heights\"] = g[\"heights\"][...])";
+const HELP: &str = "copy the heights into one file, as an ordinary dataset (h5repack, or h5py: \
+     f[\"heights\"] = g[\"heights\"][...])";
 
 /// A dataset that is not in the file alone.
 #[derive(Debug, thiserror::Error)]
@@ -64,7 +66,11 @@ pub(super) fn fields(file: &File) -> Result<Fields, Cause> {
     for (name, info) in file.links(IndexType::Name, IterationOrder::Native)? {
         found.visits += 1;
         let opened = match info.link_type {
-            LinkType::Hard if file.loc_type_by_name(&name).is_ok_and(|kind| kind != LocationType::Dataset) => continue,
+            LinkType::Hard
+                if file.loc_type_by_name(&name).is_ok_and(|kind| kind != LocationType::Dataset) =>
+            {
+                continue;
+            }
             LinkType::Hard => own(file, &name, &name),
             LinkType::External => Err(outside(&name, EXTERNAL)),
             LinkType::Soft => match leaves {
@@ -81,10 +87,13 @@ pub(super) fn fields(file: &File) -> Result<Fields, Cause> {
     Ok(found)
 }
 
-/// Places of the two dimensions of a field; nothing without two. Dimensions of a single point, such as a time, do not count beyond two.
+/// Places of the two dimensions of a field; nothing without two. Dimensions of a single point, such as a
+/// time, do not count beyond two.
 pub(super) fn points(shape: &[usize]) -> Option<[usize; 2]> {
     let mut places: Vec<usize> = (0..shape.len()).collect();
-    while let Some(single) = places.iter().position(|place| shape.get(*place) == Some(&1)).filter(|_| places.len() > 2) {
+    while let Some(single) =
+        places.iter().position(|place| shape.get(*place) == Some(&1)).filter(|_| places.len() > 2)
+    {
         places.remove(single);
     }
     places.try_into().ok()
@@ -92,7 +101,8 @@ pub(super) fn points(shape: &[usize]) -> Option<[usize; 2]> {
 
 /// Opens what a soft link leads to, if no link of the file leaves it.
 fn soft(group: &Group, name: &str, path: &str, leaves: bool) -> Result<Option<Dataset>, Cause> {
-    // The library follows a soft link wherever it leads. It stays inside if the file has no link that leaves it.
+    // The library follows a soft link wherever it leads. It stays inside if the file has no link that leaves
+    // it.
     if leaves { Err(outside(path, SOFT)) } else { own(group, name, path) }
 }
 
@@ -154,22 +164,29 @@ fn outside(path: &str, why: &'static str) -> Cause {
 /// The height field of SurfaceTopography, and its mask.
 pub(super) const HEIGHTS: [&str; 2] = ["heights", "mask"];
 
-/// Members or attributes of the root by which TopoStats marks its files, whose `image` has lines along x and heights in nanometres.
+/// Members or attributes of the root by which TopoStats marks its files, whose `image` has lines along x and
+/// heights in nanometres.
 const TOPOSTATS: [&str; 2] = ["topostats_file_version", "topostats_version"];
 
-/// The name of the one two-dimensional dataset in the root. What leaves the file does not count, unless there is nothing else.
+/// The name of the one two-dimensional dataset in the root. What leaves the file does not count, unless there
+/// is nothing else.
 pub(super) fn only_field(file: &File) -> Result<String, Cause> {
     let found = fields(file)?;
     let has = |name: &str| found.names.iter().any(|other| other == name);
     match (&found.names[..], found.outside) {
         ([name], _) => Ok(name.clone()),
         ([], Some(cause)) => Err(cause),
-        ([], None) => Err("no two-dimensional dataset in the root\nhelp: select one of another group as \"group/dataset\"".into()),
+        ([], None) => Err(
+            "no two-dimensional dataset in the root\nhelp: select one of another group as \"group/dataset\""
+                .into(),
+        ),
         (_, _) if has("image") && is_topostats(file) => Ok("image".to_owned()),
         (many, _) if many.iter().all(|name| HEIGHTS.contains(&name.as_str())) => Ok(HEIGHTS[0].to_owned()),
-        (many, _) => {
-            Err(format!("several two-dimensional datasets: {}\nhelp: select one with surface.dataset (--dataset)", many.join(", ")).into())
-        }
+        (many, _) => Err(format!(
+            "several two-dimensional datasets: {}\nhelp: select one with surface.dataset (--dataset)",
+            many.join(", ")
+        )
+        .into()),
     }
 }
 

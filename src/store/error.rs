@@ -46,16 +46,24 @@ impl FrameError {
 
 /// Runs code of a library that may panic on a damaged file, and gives the panic as a cause.
 ///
-/// The libraries promise errors, and mostly keep it; a table that someone else damaged must not end the program.
+/// The libraries promise errors, and mostly keep it; a table that someone else damaged must not end the
+/// program.
 pub(super) fn fenced<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, Cause> {
     caught(work, |panic| format!("the file is damaged ({panic})").into())
 }
 
 /// Runs code that may panic, and gives the panic as an error, made from its message.
-pub(crate) fn caught<T, E>(work: impl FnOnce() -> Result<T, E>, error: impl FnOnce(&str) -> E) -> Result<T, E> {
+pub(crate) fn caught<T, E>(
+    work: impl FnOnce() -> Result<T, E>,
+    error: impl FnOnce(&str) -> E,
+) -> Result<T, E> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(error(panic_text(panic.as_ref()))))
 }
 
 fn panic_text(panic: &(dyn Any + Send)) -> &str {
-    panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason given")
+    panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no reason given")
 }

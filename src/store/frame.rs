@@ -57,11 +57,15 @@ impl ColumnData {
 
     pub(super) fn first_not_finite(&self) -> Option<(usize, f64)> {
         let Self::F64(values) = self else { return None };
-        values.iter().enumerate().find_map(|(row, value)| value.filter(|number| !number.is_finite()).map(|number| (row, number)))
+        values
+            .iter()
+            .enumerate()
+            .find_map(|(row, value)| value.filter(|number| !number.is_finite()).map(|number| (row, number)))
     }
 }
 
-/// A table that fits its schema: every column is there, of the right kind, equally long, with nulls only where they may be.
+/// A table that fits its schema: every column is there, of the right kind, equally long, with nulls only
+/// where they may be.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     pub(super) table: &'static Table,
@@ -98,7 +102,8 @@ impl Frame {
     /// The real numbers of a column, missing ones as `None`.
     ///
     /// # Errors
-    /// If the table has no such column, or the column holds something else. The same goes for all that follow.
+    /// If the table has no such column, or the column holds something else. The same goes for all that
+    /// follow.
     pub fn f64_or_null(&self, name: &str) -> Result<&[Option<f64>], FrameError> {
         match self.column(name)? {
             ColumnData::F64(values) => Ok(values),
@@ -160,7 +165,10 @@ impl Frame {
     }
 
     fn missing(&self, name: &str) -> FrameError {
-        FrameError::new(self.table.name, format!("has missing values in the column {name:?}, where none were expected"))
+        FrameError::new(
+            self.table.name,
+            format!("has missing values in the column {name:?}, where none were expected"),
+        )
     }
 
     fn wrong_kind(&self, name: &str, found: &ColumnData, wanted: Kind) -> FrameError {
@@ -177,6 +185,9 @@ pub(super) fn wrong_kind(table: &'static Table, name: &str, is: Kind, wanted: Ki
 pub(super) fn position(table: &'static Table, name: &str) -> Result<usize, FrameError> {
     table.columns.iter().position(|column| column.name == name).ok_or_else(|| {
         let allowed: Vec<_> = table.columns.iter().map(|column| column.name).collect();
-        FrameError::new(table.name, format!("has no column {name:?}\nhelp: use one of {}", allowed.join(", ")))
+        FrameError::new(
+            table.name,
+            format!("has no column {name:?}\nhelp: use one of {}", allowed.join(", ")),
+        )
     })
 }

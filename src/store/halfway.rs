@@ -9,8 +9,8 @@ use std::path::Path;
 /// Length of a key and of a hash, as hexadecimal digits.
 const DIGITS: usize = 64;
 
-/// Version of the layout of the bytes. A checkpoint of another version does not match its hash, and the unit starts again. Raise it with every change of a type
-/// that a checkpoint holds.
+/// Version of the layout of the bytes. A checkpoint of another version does not match its hash, and the unit
+/// starts again. Raise it with every change of a type that a checkpoint holds.
 pub const CHECKPOINT_VERSION: u8 = 6;
 
 /// Hash of a checkpoint and its version, as hexadecimal digits.
@@ -31,14 +31,20 @@ pub fn write_halfway(path: &Path, key: &str, bytes: &[u8]) -> Result<(), StoreEr
 /// # Errors
 /// As [`commit_bytes`](super::commit::commit_bytes).
 pub fn write_state(path: &Path, key: &str, bytes: &[u8]) -> Result<Written, StoreError> {
-    commit_parts("keep what is needed to go on in", path, &[key.as_bytes(), seal(bytes).to_hex().as_bytes(), bytes])
+    commit_parts(
+        "keep what is needed to go on in",
+        path,
+        &[key.as_bytes(), seal(bytes).to_hex().as_bytes(), bytes],
+    )
 }
 
 /// True if `path` begins as one of the unit `key` does. Whether it is whole is seen when it is read.
 #[must_use]
 pub fn is_halfway(path: &Path, key: &str) -> bool {
     let mut head = [0; DIGITS];
-    path.is_file() && std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == *key.as_bytes()
+    path.is_file()
+        && std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok()
+        && head == *key.as_bytes()
 }
 
 /// The bytes at `path`, if they are whole and of the unit `key`.

@@ -16,7 +16,8 @@ use super::scan::room;
 use super::surface_header;
 pub use super::surface_header::{Generated, Measured, Quality, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
 
-/// Does something while no other thread is in the HDF5 library, which ends with the program and must not be in use then.
+/// Does something while no other thread is in the HDF5 library, which ends with the program and must not be
+/// in use then.
 pub fn alone<T>(act: impl FnOnce() -> T) -> T {
     hdf5_metno::sync::sync(act)
 }
@@ -32,9 +33,13 @@ const BAND: usize = 256;
 /// Writes a surface in place of `path`: heights from the mean plane \[m\], rows along x.
 ///
 /// # Errors
-/// If the field is not square, empty or not finite, or the file cannot be written whole; what was at `path` is then
-/// still there.
-pub fn write_surface(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) -> Result<Written, StoreError> {
+/// If the field is not square, empty or not finite, or the file cannot be written whole; what was at `path`
+/// is then still there.
+pub fn write_surface(
+    path: &Path,
+    header: &SurfaceHeader,
+    heights: ArrayView2<'_, f64>,
+) -> Result<Written, StoreError> {
     commit(
         "write the surface to",
         path,
@@ -76,7 +81,8 @@ pub fn read_header(path: &Path) -> Result<SurfaceHeader, StoreError> {
     .map_err(|cause| StoreError::new("read the header of the surface", path, cause))
 }
 
-/// Checks that the heights [`read_scan`](super::hdf5_scan::read_scan) or [`read_surface`] would read lie in the file itself.
+/// Checks that the heights [`read_scan`](super::hdf5_scan::read_scan) or [`read_surface`] would read lie in
+/// the file itself.
 ///
 /// # Errors
 /// The other file, and what to do. A file that cannot be opened, or has no such dataset, is no error here.
@@ -115,11 +121,16 @@ fn is_own(file: &File) -> Result<bool, Cause> {
     Ok(file.attr_names()?.iter().any(|name| name == "schema_version"))
 }
 
-/// Writes a height field \[m\] as Tamaas' `H5Dumper` does, to be opened with its `read`: the field `surface` of a model of the type `basic_2d`.
+/// Writes a height field \[m\] as Tamaas' `H5Dumper` does, to be opened with its `read`: the field
+/// `surface` of a model of the type `basic_2d`.
 ///
 /// # Errors
 /// If the file cannot be written whole.
-pub fn write_tamaas(path: &Path, heights: ArrayView2<'_, f64>, size_m: [f64; 2]) -> Result<Written, StoreError> {
+pub fn write_tamaas(
+    path: &Path,
+    heights: ArrayView2<'_, f64>,
+    size_m: [f64; 2],
+) -> Result<Written, StoreError> {
     commit(
         "write the surface to",
         path,
@@ -142,7 +153,11 @@ pub fn write_tamaas(path: &Path, heights: ArrayView2<'_, f64>, size_m: [f64; 2])
         |temporary| {
             library(|| {
                 let same = open(temporary)?.dataset(TAMAAS_FIELD)?.read_2d::<f64>()? == heights;
-                if same { Ok(()) } else { Err("the content read back differs from the content written".into()) }
+                if same {
+                    Ok(())
+                } else {
+                    Err("the content read back differs from the content written".into())
+                }
             })
         },
     )
@@ -156,21 +171,25 @@ pub(super) fn library<T>(work: impl FnOnce() -> Result<T, Cause>) -> Result<T, C
     fenced(work).map_err(|cause| cause.to_string().into())
 }
 
-/// Options of a file in format 1.10: its metadata have checksums, so that damage is an error and not another surface.
+/// Options of a file in format 1.10: its metadata have checksums, so that damage is an error and not another
+/// surface.
 pub(super) fn options() -> FileBuilder {
     options_of(LibraryVersion::V110)
 }
 
-/// Options of a file whose objects have the form of a version of the format, which readers without the HDF5 library may need.
+/// Options of a file whose objects have the form of a version of the format, which readers without the HDF5
+/// library may need.
 ///
-/// The form of attributes is the usual one: these readers open no file with another limit between the two forms.
+/// The form of attributes is the usual one: these readers open no file with another limit between the two
+/// forms.
 pub(super) fn options_of(version: LibraryVersion) -> FileBuilder {
     let mut options = File::with_options();
     options.with_fapl(|access| {
         access
             // The upper bound too, so that the file does not change with the library.
             .libver_bounds(version, LibraryVersion::V110)
-            // A file is never written under its own name, so there is nothing to lock; and some file systems cannot.
+            // A file is never written under its own name, so there is nothing to lock; and some file systems
+            // cannot.
             .file_locking(false)
     });
     // No times, so that equal surfaces are equal bytes.
@@ -197,7 +216,9 @@ fn write_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
         return Err(format!("its field has {rows} by {columns} heights, and must be square").into());
     }
     if let Some(((row, column), height)) = heights.indexed_iter().find(|(_, height)| !height.is_finite()) {
-        return Err(format!("its height in row {row}, column {column} is {height}, and must be finite").into());
+        return Err(
+            format!("its height in row {row}, column {column} is {height}, and must be finite").into()
+        );
     }
     let (file, kind) = axes::start(path, &options())?;
     surface_header::write(&file, header)?;
@@ -236,7 +257,11 @@ fn check_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
 fn heights_of(path: &Path, file: &File) -> Result<Dataset, Cause> {
     let data = dataset(file, HEIGHT)?.ok_or_else(|| format!("it has no dataset {HEIGHT:?}"))?;
     let (rows, columns) = check_extent(path, &data, HEIGHT, 1)?;
-    if rows == columns { Ok(data) } else { Err(format!("its field has {rows} by {columns} heights, and must be square").into()) }
+    if rows == columns {
+        Ok(data)
+    } else {
+        Err(format!("its field has {rows} by {columns} heights, and must be square").into())
+    }
 }
 
 /// Rows and columns of a dataset, checked against the size of the file before memory is allocated.
@@ -244,13 +269,19 @@ fn check_extent(path: &Path, data: &Dataset, name: &str, packed: u64) -> Result<
     let [rows, columns] = data.get_shape()?[..] else {
         return Err(format!("its dataset {name:?} is not two-dimensional").into());
     };
-    check_bytes(path, data, [rows, columns], packed).map_err(|cause| format!("its dataset {name:?} {cause}"))?;
+    check_bytes(path, data, [rows, columns], packed)
+        .map_err(|cause| format!("its dataset {name:?} {cause}"))?;
     Ok((rows, columns))
 }
 
 /// Checks that a file of this size can hold these rows and columns of a dataset, packed by at most this
 /// factor.
-pub(super) fn check_bytes(path: &Path, data: &Dataset, [rows, columns]: [usize; 2], packed: u64) -> Result<(), Cause> {
+pub(super) fn check_bytes(
+    path: &Path,
+    data: &Dataset,
+    [rows, columns]: [usize; 2],
+    packed: u64,
+) -> Result<(), Cause> {
     let most = fs::metadata(path)?.len().saturating_mul(packed);
     let width = data.dtype()?.size() as u64;
     let bytes = (rows as u64).checked_mul(columns as u64).and_then(|count| count.checked_mul(width));
@@ -262,11 +293,15 @@ pub(super) fn check_bytes(path: &Path, data: &Dataset, [rows, columns]: [usize; 
 
 /// A whole two-dimensional dataset, every value of which must be finite.
 fn field(data: &Dataset, name: &str) -> Result<Array2<f64>, Cause> {
-    let [rows, columns] = data.get_shape()?[..] else { return Err(format!("its dataset {name:?} is not two-dimensional").into()) };
+    let [rows, columns] = data.get_shape()?[..] else {
+        return Err(format!("its dataset {name:?} is not two-dimensional").into());
+    };
     let values = values(data, [rows, columns])?;
     match values.indexed_iter().find(|(_, value)| !value.is_finite()) {
         None => Ok(values),
-        Some(((row, column), value)) => Err(format!("its dataset {name:?} has {value} in row {row}, column {column}").into()),
+        Some(((row, column), value)) => {
+            Err(format!("its dataset {name:?} has {value} in row {row}, column {column}").into())
+        }
     }
 }
 

@@ -2,9 +2,12 @@
 
 use std::path::Path;
 
-use hdf5_metno::types::{FixedAscii, FixedUnicode, FloatSize, IntSize, TypeDescriptor, VarLenArray, VarLenAscii, VarLenUnicode};
+use hdf5_metno::types::{
+    FixedAscii, FixedUnicode, FloatSize, IntSize, TypeDescriptor, VarLenArray, VarLenAscii, VarLenUnicode,
+};
 use hdf5_metno::{
-    Container, Dataset, File, Group, IndexType, IterationOrder, LinkType, Location, LocationType, ObjectReference1, ReferencedObject,
+    Container, Dataset, File, Group, IndexType, IterationOrder, LinkType, Location, LocationType,
+    ObjectReference1, ReferencedObject,
 };
 
 use super::dataset::{HEIGHTS, check_storage, dataset, fields, is_topostats, only_field, points};
@@ -18,7 +21,8 @@ use super::scan::{Asked, FirstIndex, MOST_POINTS, Scan};
 
 /// A file cannot hold more than this many times its size: what deflate reaches on zeros.
 const MOST_PACKED: u64 = 1100;
-/// Attributes of an object, or members of a group, that are read; files with more have them for other purposes.
+/// Attributes of an object, or members of a group, that are read; files with more have them for other
+/// purposes.
 const MOST_ENTRIES: usize = 256;
 /// Numbers that an attribute may have to be kept: sizes are one or two.
 const MOST_NUMBERS: usize = 16;
@@ -29,8 +33,8 @@ const MOST_COORDINATES: usize = 1 << 20;
 /// Beginning of the attribute `NAME` of a NetCDF dimension without coordinates.
 const NO_COORDINATES: &str = "This is a netCDF dimension but not a netCDF variable";
 
-/// Reads a height field from any HDF5 file, a measured one for instance, where missing points may be no numbers. Without a name it is the only field
-/// in the root. Sizes and units are those of its attributes.
+/// Reads a height field from any HDF5 file, a measured one for instance, where missing points may be no
+/// numbers. Without a name it is the only field in the root. Sizes and units are those of its attributes.
 ///
 /// # Errors
 /// If the file cannot be read, or has no two-dimensional dataset of numbers by that name.
@@ -41,7 +45,11 @@ pub fn read_scan(path: &Path, asked: &Asked<'_>) -> Result<Scan, StoreError> {
         let file = open(path)?;
         let name = asked.field.map_or_else(|| only_field(&file), |name| Ok(name.to_owned()))?;
         let Some(data) = dataset(&file, &name)? else {
-            return Err(format!("no dataset {name:?}\nhelp: the root contains {}", file.member_names()?.join(", ")).into());
+            return Err(format!(
+                "no dataset {name:?}\nhelp: the root contains {}",
+                file.member_names()?.join(", ")
+            )
+            .into());
         };
         field(path, &file, (&name, &data))?.scan()
     })
@@ -65,33 +73,42 @@ fn field(path: &Path, file: &File, (name, data): (&str, &Dataset)) -> Result<Fie
     let shape = data.get_shape()?;
     let count = |place: usize| shape.get(place).copied().unwrap_or_default();
     let Some(places) = points(&shape) else {
-        let kind =
-            if shape.len() < 2 { "is not two-dimensional".to_owned() } else { format!("has {} dimensions instead of 2", shape.len()) };
+        let kind = if shape.len() < 2 {
+            "is not two-dimensional".to_owned()
+        } else {
+            format!("has {} dimensions instead of 2", shape.len())
+        };
         return Err(format!("its dataset {name:?} {kind}").into());
     };
     let extent = places.map(count);
     check_bytes(path, data, extent, MOST_PACKED).map_err(|cause| format!("its dataset {name:?} {cause}"))?;
     let [rows, columns] = extent;
     if (rows as u64).saturating_mul(columns as u64) > MOST_POINTS {
-        return Err(format!("dataset {name:?} has {rows} by {columns} values, more than the limit of 2^28").into());
+        return Err(
+            format!("dataset {name:?} has {rows} by {columns} values, more than the limit of 2^28").into()
+        );
     }
     let kind = number(data, name)?;
     let groups = groups(file, name);
     let own = attributes(data);
-    let netcdf =
-        own.iter().any(|(name, _)| name == "DIMENSION_LIST" || name.starts_with("_Netcdf4")) || data.attr("DIMENSION_LIST").is_ok();
+    let netcdf = own.iter().any(|(name, _)| name == "DIMENSION_LIST" || name.starts_with("_Netcdf4"))
+        || data.attr("DIMENSION_LIST").is_ok();
     let image = is_topostats(file) || own.text("CLASS") == Some("IMAGE");
     let levels = std::iter::once(own).chain(groups.iter().map(stated)).collect();
     let place = name.rfind('/').map_or("", |end| name.get(..=end).unwrap_or_default());
     let mask = match dataset(file, &format!("{place}{}", HEIGHTS[1]))? {
-        Some(mask) if name.get(place.len()..) == Some(HEIGHTS[0]) && mask.get_shape()? == shape => Some(values(&mask, extent)?),
+        Some(mask) if name.get(place.len()..) == Some(HEIGHTS[0]) && mask.get_shape()? == shape => {
+            Some(values(&mask, extent)?)
+        }
         _ => None,
     };
     let axes = match scales(data).filter(|scales| scales.len() == shape.len()) {
-        Some(scales) => [0, 1].map(|at| match (places.get(at).and_then(|place| scales.get(*place)), extent.get(at)) {
-            (Some(Some(scale)), Some(points)) => axis(scale, *points),
-            _ => Axis::default(),
-        }),
+        Some(scales) => {
+            [0, 1].map(|at| match (places.get(at).and_then(|place| scales.get(*place)), extent.get(at)) {
+                (Some(Some(scale)), Some(points)) => axis(scale, *points),
+                _ => Axis::default(),
+            })
+        }
         None => beside(file, place, extent),
     };
     Ok(Field {
@@ -115,7 +132,10 @@ fn number(data: &Dataset, name: &str) -> Result<Number, Cause> {
         Ok(TypeDescriptor::Float(FloatSize::U4)) => Ok(Number::F32),
         // Half and quadruple precision, which the library converts.
         Ok(TypeDescriptor::Float(_)) | Err(_) => Ok(Number::F64),
-        Ok(other) => Err(format!("its dataset {name:?} has values of the type {other}\nhelp: heights must be real numbers").into()),
+        Ok(other) => Err(format!(
+            "its dataset {name:?} has values of the type {other}\nhelp: heights must be real numbers"
+        )
+        .into()),
     }
 }
 
@@ -151,14 +171,16 @@ fn groups(file: &File, name: &str) -> Vec<Group> {
     groups
 }
 
-/// Attributes of a group, and its datasets of one value, in which some programs keep what others keep in attributes.
+/// Attributes of a group, and its datasets of one value, in which some programs keep what others keep in
+/// attributes.
 fn stated(group: &Group) -> Attributes {
     let mut found = attributes(group);
     if group.len() as usize > MOST_ENTRIES {
         return found;
     }
     for (name, info) in group.links(IndexType::Name, IterationOrder::Native).unwrap_or_default() {
-        let is_dataset = info.link_type == LinkType::Hard && group.loc_type_by_name(&name).is_ok_and(|kind| kind == LocationType::Dataset);
+        let is_dataset = info.link_type == LinkType::Hard
+            && group.loc_type_by_name(&name).is_ok_and(|kind| kind == LocationType::Dataset);
         let Some(data) = is_dataset.then(|| group.dataset(&name).ok()).flatten() else { continue };
         if data.size() == 1 && check_storage(&data, &name).is_ok() {
             found.extend(name, value(&data));
@@ -201,16 +223,24 @@ fn value(of: &Container) -> Option<Value> {
         TypeDescriptor::FixedUnicode(length) if length <= LONGEST_TEXT => {
             of.read_raw::<FixedUnicode<LONGEST_TEXT>>().ok()?.first().map(|found| text(found.as_bytes()))
         }
-        TypeDescriptor::VarLenAscii => of.read_raw::<VarLenAscii>().ok()?.first().map(|found| text(found.as_bytes())),
-        TypeDescriptor::VarLenUnicode => of.read_raw::<VarLenUnicode>().ok()?.first().map(|found| text(found.as_bytes())),
+        TypeDescriptor::VarLenAscii => {
+            of.read_raw::<VarLenAscii>().ok()?.first().map(|found| text(found.as_bytes()))
+        }
+        TypeDescriptor::VarLenUnicode => {
+            of.read_raw::<VarLenUnicode>().ok()?.first().map(|found| text(found.as_bytes()))
+        }
         _ => None,
     }
 }
 
-/// Axes of a field without dimension scales: the datasets `x` and `y` of its group, if the numbers of their points fit.
+/// Axes of a field without dimension scales: the datasets `x` and `y` of its group, if the numbers of their
+/// points fit.
 fn beside(file: &File, place: &str, extent: [usize; 2]) -> [Axis; 2] {
     let beside = |names: [&str; 2]| names.map(|name| dataset(file, &format!("{place}{name}")).ok().flatten());
-    let found = [["x", "y"], ["X", "Y"], ["x_m", "y_m"]].into_iter().map(beside).find(|found| found.iter().all(Option::is_some));
+    let found = [["x", "y"], ["X", "Y"], ["x_m", "y_m"]]
+        .into_iter()
+        .map(beside)
+        .find(|found| found.iter().all(Option::is_some));
     let Some([Some(x), Some(y)]) = found else { return [Axis::default(), Axis::default()] };
     match [x.size(), y.size()] {
         sizes if sizes == extent => [axis(&x, x.size()), axis(&y, y.size())],
@@ -240,7 +270,11 @@ fn axis(scale: &Dataset, points: usize) -> Axis {
         _ if none => String::new(),
         _ => label.to_owned(),
     };
-    let readable = !none && scale.ndim() == 1 && scale.size() == points && points <= MOST_COORDINATES && number(scale, &name).is_ok();
+    let readable = !none
+        && scale.ndim() == 1
+        && scale.size() == points
+        && points <= MOST_COORDINATES
+        && number(scale, &name).is_ok();
     let coordinates = readable.then(|| scale.read_raw::<f64>().ok()).flatten();
     Axis { name, attributes, coordinates }
 }

@@ -1,7 +1,7 @@
 //! Check of the global heaps of an HDF5 file, which hold its strings of variable length.
 //!
-//! The HDF5 library does not return from a heap in which an object has no size. So a damaged heap is an error before the library opens the file.
-//! Source: HDF5 File Format Specification, section III.E (global heap).
+//! The HDF5 library does not return from a heap in which an object has no size. So a damaged heap is an error
+//! before the library opens the file. Source: HDF5 File Format Specification, section III.E (global heap).
 
 use super::error::Cause;
 use std::fs::File;
@@ -37,7 +37,11 @@ pub(super) fn check(path: &Path) -> Result<(), Cause> {
             // Index and number of references; then the size, which of free space includes the head.
             let free = number(&mut file)? & 0xffff == 0;
             let stored = number(&mut file)?;
-            let needed = if free { Some(stored) } else { stored.checked_next_multiple_of(8).and_then(|padded| padded.checked_add(HEAD)) };
+            let needed = if free {
+                Some(stored)
+            } else {
+                stored.checked_next_multiple_of(8).and_then(|padded| padded.checked_add(HEAD))
+            };
             match needed {
                 Some(needed) if needed > 0 && needed <= size - at => at += needed,
                 _ => return Err("the file is damaged (global heap of its strings)".into()),
@@ -77,7 +81,8 @@ fn number(file: &mut File) -> Result<u64, Cause> {
 mod tests {
     use super::*;
 
-    /// A collection of 64 bytes with an object of 5 bytes and free space, whose sizes are those given. It is not an HDF5 file.
+    /// A collection of 64 bytes with an object of 5 bytes and free space, whose sizes are those given. It is
+    /// not an HDF5 file.
     fn is_sound(object: u64, free: u64) -> Result<bool, Cause> {
         let mut bytes = vec![7; 3];
         bytes.extend(BEGIN);

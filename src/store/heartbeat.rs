@@ -1,7 +1,9 @@
-//! Heartbeat of a process that computes in an output folder: a small file in `running/`, rewritten every few seconds and removed at the end.
+//! Heartbeat of a process that computes in an output folder: a small file in `running/`, rewritten every few
+//! seconds and removed at the end.
 //!
-//! The process holds a lock (`flock`) on its file, which the system releases when the process ends in any way. Where a file system has no such locks or does not share
-//! them between machines, the age of the file decides. No process waits for a heartbeat, and nothing is refused because of one.
+//! The process holds a lock (`flock`) on its file, which the system releases when the process ends in any
+//! way. Where a file system has no such locks or does not share them between machines, the age of the file
+//! decides. No process waits for a heartbeat, and nothing is refused because of one.
 
 use super::commit::writing;
 use serde::{Deserialize, Serialize};
@@ -16,7 +18,8 @@ const FOLDER: &str = "running";
 /// Age from which on a file without a lock belongs to a process that has ended.
 const FRESH: Duration = Duration::from_secs(60);
 
-/// Attempts to read a file that is being rewritten, and to lock one that is being looked at; and the time between two.
+/// Attempts to read a file that is being rewritten, and to lock one that is being looked at; and the time
+/// between two.
 const ATTEMPTS: usize = 5;
 const BETWEEN: Duration = Duration::from_millis(10);
 
@@ -84,8 +87,8 @@ pub struct Pulse {
 }
 
 impl Pulse {
-    /// Begins in an output folder; nothing where no file can be written there. `announce` receives the path before the file is there; an interrupt waits
-    /// for both.
+    /// Begins in an output folder; nothing where no file can be written there. `announce` receives the path
+    /// before the file is there; an interrupt waits for both.
     #[must_use]
     pub fn begin(dir: &Path, announce: impl FnOnce(&Path)) -> Option<Self> {
         let _writing = writing();
@@ -111,7 +114,8 @@ impl Pulse {
         Some(Self { file, path, length: 0 })
     }
 
-    /// Writes a state. In one piece and in place, since the lock is on the file; a shorter state is filled with spaces. A full disk ends the run elsewhere.
+    /// Writes a state. In one piece and in place, since the lock is on the file; a shorter state is filled
+    /// with spaces. A full disk ends the run elsewhere.
     pub fn beat(&mut self, state: &Heartbeat) {
         let Ok(mut text) = serde_json::to_string(state) else { return };
         text.extend(std::iter::repeat_n(' ', self.length.saturating_sub(text.len())));
@@ -141,7 +145,9 @@ pub fn remove(path: &Path) {
 pub fn processes(dir: &Path) -> [Vec<Heartbeat>; 2] {
     let mut found = all(&dir.join(FOLDER));
     found.sort_by(|(_, a, _), (_, b, _)| (&a.began, a.process_id).cmp(&(&b.began, b.process_id)));
-    let of = |wanted: bool| found.iter().filter(|(_, _, lives)| *lives == wanted).map(|(_, beat, _)| beat.clone()).collect();
+    let of = |wanted: bool| {
+        found.iter().filter(|(_, _, lives)| *lives == wanted).map(|(_, beat, _)| beat.clone()).collect()
+    };
     [of(true), of(false)]
 }
 
@@ -159,12 +165,21 @@ fn remove_ended(folder: &Path) {
 fn own(folder: &Path) -> Vec<PathBuf> {
     let is_own = |path: &PathBuf| {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        name.starts_with("hysteron-") && name.ends_with(".json") && path.metadata().is_ok_and(|of| of.is_file() && of.len() <= MOST_BYTES)
+        name.starts_with("hysteron-")
+            && name.ends_with(".json")
+            && path.metadata().is_ok_and(|of| of.is_file() && of.len() <= MOST_BYTES)
     };
-    std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).filter(is_own).collect()
+    std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(is_own)
+        .collect()
 }
 
-/// The heartbeats of a folder, each with its path and whether its process lives. Other files are not looked at.
+/// The heartbeats of a folder, each with its path and whether its process lives. Other files are not looked
+/// at.
 fn all(folder: &Path) -> Vec<(PathBuf, Heartbeat, bool)> {
     own(folder).into_iter().filter_map(|path| read(&path).map(|(beat, lives)| (path, beat, lives))).collect()
 }
@@ -185,11 +200,18 @@ fn read(path: &Path) -> Option<(Heartbeat, bool)> {
 /// a file that cannot be opened.
 fn lives(path: &Path, host: Option<&str>) -> Option<bool> {
     let file = File::open(path).ok()?;
-    let age = file.metadata().and_then(|of| of.modified()).ok().and_then(|at| at.elapsed().ok()).unwrap_or_default();
+    let age = file
+        .metadata()
+        .and_then(|of| of.modified())
+        .ok()
+        .and_then(|at| at.elapsed().ok())
+        .unwrap_or_default();
     Some(match file.try_lock_shared() {
         Err(TryLockError::WouldBlock) => true,
         Err(TryLockError::Error(_)) => age < FRESH,
         // On this machine, the process has ended. The locks of another one may not be seen here.
-        Ok(()) => age < FRESH && host.is_some_and(|host| *host != *gethostname::gethostname().to_string_lossy()),
+        Ok(()) => {
+            age < FRESH && host.is_some_and(|host| *host != *gethostname::gethostname().to_string_lossy())
+        }
     })
 }

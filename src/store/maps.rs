@@ -10,7 +10,8 @@ use hdf5_metno::{File, Group};
 use ndarray::{Array2, ArrayView2};
 use std::path::Path;
 
-/// Version of the layout of a file of maps, raised whenever a dataset or attribute is renamed, removed, or changes its meaning.
+/// Version of the layout of a file of maps, raised whenever a dataset or attribute is renamed, removed, or
+/// changes its meaning.
 const MAPS_VERSION: u32 = 1;
 /// Rows and columns of a chunk.
 const CHUNK: usize = 256;
@@ -83,7 +84,8 @@ pub struct LoopMaps {
     pub pull_off: Option<StoredMap>,
 }
 
-/// The maps at the load reversal `F_max/(E* A0)` and at the maximum tensile load of its unloading; nothing without the first, and without the gap of contact.
+/// The maps at the load reversal `F_max/(E* A0)` and at the maximum tensile load of its unloading; nothing
+/// without the first, and without the gap of contact.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -91,7 +93,11 @@ pub fn read_loop_maps(path: &Path, max_load: f64) -> Result<Option<LoopMaps>, St
     let find = || -> Result<Option<LoopMaps>, Cause> {
         let file = open(path)?;
         // Files of the first builds lack it.
-        let Ok(contact_gap_m) = file.attr("contact_gap_m").and_then(|attribute| attribute.read_scalar::<f64>()) else { return Ok(None) };
+        let Ok(contact_gap_m) =
+            file.attr("contact_gap_m").and_then(|attribute| attribute.read_scalar::<f64>())
+        else {
+            return Ok(None);
+        };
         let (mut reversal, mut pull_off) = (None, None);
         let mut lowest = 0.0;
         for group in file.groups()? {
@@ -144,7 +150,8 @@ pub fn read_maps(path: &Path) -> Result<Vec<StoredMap>, StoreError> {
 /// The map of a group.
 fn stored(group: &Group) -> Result<StoredMap, Cause> {
     let step = group.attr("step")?.read_scalar::<i64>()?;
-    let [gap_m, pressure_pa] = [FIELDS[0].0, FIELDS[1].0].map(|name| group.dataset(name).and_then(|data| data.read_2d()));
+    let [gap_m, pressure_pa] =
+        [FIELDS[0].0, FIELDS[1].0].map(|name| group.dataset(name).and_then(|data| data.read_2d()));
     Ok(StoredMap { step, gap_m: gap_m?, pressure_pa: pressure_pa? })
 }
 
@@ -186,11 +193,24 @@ fn write_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Resul
     Ok(file.close()?)
 }
 
-fn write_field(file: &File, group: &Group, points: usize, name: &str, unit: &str, values: &[f32]) -> Result<(), Cause> {
+fn write_field(
+    file: &File,
+    group: &Group,
+    points: usize,
+    name: &str,
+    unit: &str,
+    values: &[f32],
+) -> Result<(), Cause> {
     let field = ArrayView2::from_shape((points, points), values)?;
     let chunk = CHUNK.min(points);
-    let data =
-        group.new_dataset::<f32>().shape((points, points)).chunk((chunk, chunk)).shuffle().deflate(LEVEL).fletcher32().create(name)?;
+    let data = group
+        .new_dataset::<f32>()
+        .shape((points, points))
+        .chunk((chunk, chunk))
+        .shuffle()
+        .deflate(LEVEL)
+        .fletcher32()
+        .create(name)?;
     write_text(&data, "unit", unit)?;
     data.write(field)?;
     // While the dataset is open: closing it writes what is buffered, and reports no error.
@@ -202,7 +222,8 @@ fn check_all(path: &Path, header: &MapsHeader<'_>, maps: &[ContactMap]) -> Resul
     for map in maps {
         for (name, _, values) in fields(map) {
             let data = file.dataset(&format!("{}/{name}", group_name(map)))?;
-            let same = data.get_shape()? == [header.points.div_ceil(map.stride); 2] && data.read_raw::<f32>()? == values;
+            let same = data.get_shape()? == [header.points.div_ceil(map.stride); 2]
+                && data.read_raw::<f32>()? == values;
             if !same {
                 return Err("the content read back differs from the content written".into());
             }

@@ -119,7 +119,8 @@ impl Kept {
     #[must_use]
     pub fn of(written: &Written, dir: &Path) -> Self {
         let path = written.path.strip_prefix(dir).unwrap_or(&written.path);
-        let parts: Vec<String> = path.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
+        let parts: Vec<String> =
+            path.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
         Self { path: parts.join("/"), size_bytes: written.size_bytes, blake3: written.blake3.clone() }
     }
 
@@ -128,13 +129,20 @@ impl Kept {
     pub fn fault(&self, dir: &Path, check: Check) -> Option<Fault> {
         let path = dir.join(&self.path);
         let size = match std::fs::metadata(&path) {
-            Ok(found) if !found.is_file() => return Some(Fault::Changed(format!("{} is not a file", self.path))),
+            Ok(found) if !found.is_file() => {
+                return Some(Fault::Changed(format!("{} is not a file", self.path)));
+            }
             Ok(found) => found.len(),
-            Err(error) if error.kind() == ErrorKind::NotFound => return Some(Fault::Missing(format!("{} is missing", self.path))),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                return Some(Fault::Missing(format!("{} is missing", self.path)));
+            }
             Err(error) => return Some(Fault::Changed(format!("cannot access {}: {error}", self.path))),
         };
         if size != self.size_bytes {
-            return Some(Fault::Changed(format!("{} has {size} bytes instead of {}", self.path, self.size_bytes)));
+            return Some(Fault::Changed(format!(
+                "{} has {size} bytes instead of {}",
+                self.path, self.size_bytes
+            )));
         }
         if check == Check::Sizes {
             return None;
@@ -187,7 +195,9 @@ fn fits(receipt: Receipt, path: &Path) -> Result<Receipt, String> {
     if receipt.stage != "spec" && folder.is_none_or(|folder| folder != receipt.stage.as_str()) {
         return Err(format!("provenance record of another stage, {:?}", receipt.stage));
     }
-    let inside = |path: &str| !path.is_empty() && Path::new(path).components().all(|part| matches!(part, Component::Normal(_)));
+    let inside = |path: &str| {
+        !path.is_empty() && Path::new(path).components().all(|part| matches!(part, Component::Normal(_)))
+    };
     match receipt.files.iter().find(|file| !inside(&file.path)) {
         _ if receipt.files.is_empty() => Err("no file in the provenance record".to_owned()),
         Some(strange) => Err(format!("{:?} is not a file of the directory", strange.path)),
@@ -205,6 +215,9 @@ fn parse(bytes: &[u8]) -> Result<Receipt, String> {
     if receipt.receipt == RECEIPT_VERSION {
         Ok(receipt)
     } else {
-        Err(format!("version {} of the provenance record; this program reads version {RECEIPT_VERSION}", receipt.receipt))
+        Err(format!(
+            "version {} of the provenance record; this program reads version {RECEIPT_VERSION}",
+            receipt.receipt
+        ))
     }
 }

@@ -13,9 +13,11 @@ use crate::physics::surface::texture::Texture;
 
 use super::error::Cause;
 
-/// Version of the layout of a surface file, raised whenever an attribute is renamed, removed, or changes its meaning.
+/// Version of the layout of a surface file, raised whenever an attribute is renamed, removed, or changes its
+/// meaning.
 pub const SURFACE_VERSION: u32 = 1;
-/// Group with a copy of every text attribute of the root, as strings of fixed length, and the checksum of the heights. Files of earlier versions have these strings in the root.
+/// Group with a copy of every text attribute of the root, as strings of fixed length, and the checksum of the
+/// heights. Files of earlier versions have these strings in the root.
 const COPIES: &str = "header";
 /// Attribute of that group: BLAKE3 of the heights.
 const SUM: &str = "height_blake3";
@@ -119,12 +121,14 @@ pub struct SpectrumFit {
     pub scatter: f64,
     /// Wavelength above which the spectrum holds no data \[m\]; nothing if it holds data up to the longest.
     pub long_cut_m: Option<f64>,
-    /// Wavelength below which it holds no data \[m\], and its cause; nothing if it holds data down to the points.
+    /// Wavelength below which it holds no data \[m\], and its cause; nothing if it holds data down to the
+    /// points.
     pub short_cut: Option<(f64, SpectrumEnd)>,
 }
 
 impl SpectrumFit {
-    /// Wavelength of the roll-off of a surface of side L \[m\]; nothing without one. In a file without a statement there is one well within the scan.
+    /// Wavelength of the roll-off of a surface of side L \[m\]; nothing without one. In a file without a
+    /// statement there is one well within the scan.
     #[must_use]
     pub fn roll_off_m(&self, length_m: f64) -> Option<f64> {
         let at = TAU / self.roll_off_1_m;
@@ -231,8 +235,9 @@ fn read_measured(file: &File, words: &Group, names: &[String]) -> Result<Measure
             decay_length: finite(file, "texture_decay_length")?,
         })
     };
-    let short_cut =
-        || -> Result<(f64, SpectrumEnd), Cause> { Ok((finite(file, "fit_short_cut_m")?, choice(words, "fit_short_cut_cause")?)) };
+    let short_cut = || -> Result<(f64, SpectrumEnd), Cause> {
+        Ok((finite(file, "fit_short_cut_m")?, choice(words, "fit_short_cut_cause")?))
+    };
     let fit = || -> Result<SpectrumFit, Cause> {
         Ok(SpectrumFit {
             hurst: finite(file, "fit_hurst")?,
@@ -271,7 +276,10 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
     }
     let version: u32 = number(file, "schema_version")?;
     if version != SURFACE_VERSION {
-        return Err(format!("unsupported layout version {version}; this program reads version {SURFACE_VERSION}").into());
+        return Err(format!(
+            "unsupported layout version {version}; this program reads version {SURFACE_VERSION}"
+        )
+        .into());
     }
     let words = &file.group(if file.link_exists(COPIES) { COPIES } else { "/" })?;
     let generated = if names.iter().any(|name| name == "hurst") {
@@ -297,7 +305,11 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
         rms_curvature_1_m: finite(file, "rms_curvature_1_m")?,
         nayak_parameter: finite(file, "nayak_parameter")?,
         generated,
-        measured: if names.iter().any(|name| name == "source") { Some(read_measured(file, words, &names)?) } else { None },
+        measured: if names.iter().any(|name| name == "source") {
+            Some(read_measured(file, words, &names)?)
+        } else {
+            None
+        },
     })
 }
 
@@ -320,10 +332,15 @@ pub(super) fn write_number<T: H5Type>(place: &Location, name: &str, value: T) ->
 }
 
 pub(super) fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
-    if value.is_finite() { write_number(place, name, value) } else { Err(format!("{name} is {value}, must be finite").into()) }
+    if value.is_finite() {
+        write_number(place, name, value)
+    } else {
+        Err(format!("{name} is {value}, must be finite").into())
+    }
 }
 
-/// Writes a text as an attribute of variable length, which h5py reads as `str`. It must not contain the character 0.
+/// Writes a text as an attribute of variable length, which h5py reads as `str`. It must not contain the
+/// character 0.
 pub(super) fn write_text(place: &Location, name: &str, value: &str) -> Result<(), Cause> {
     let text: VarLenUnicode = value.parse()?;
     Ok(place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&text)?)
@@ -331,11 +348,14 @@ pub(super) fn write_text(place: &Location, name: &str, value: &str) -> Result<()
 
 /// Writes a word as an attribute of the root, and a copy of it as a string of fixed length.
 ///
-/// HDF5 keeps strings of variable length in a heap without a checksum, and a single changed byte in the heap can make the library
-/// loop for ever. This program therefore reads only the copies.
+/// HDF5 keeps strings of variable length in a heap without a checksum, and a single changed byte in the heap
+/// can make the library loop for ever. This program therefore reads only the copies.
 pub(super) fn write_word(file: &File, name: &str, value: &str) -> Result<(), Cause> {
     if value.len() > LONGEST_WORD || value.contains('\0') {
-        return Err(format!("its {name} {value:?} cannot be stored: it may have {LONGEST_WORD} bytes, none of them 0").into());
+        return Err(format!(
+            "its {name} {value:?} cannot be stored: it may have {LONGEST_WORD} bytes, none of them 0"
+        )
+        .into());
     }
     write_copy(file, name, value)?;
     write_text(file, name, value)
@@ -407,24 +427,36 @@ pub struct Quality {
     pub tip_cutoff_m: Option<f64>,
     /// Exponent of the spectral density of the removed short wavelengths.
     pub noise_exponent: Option<f64>,
-    /// Curvature of the sharpest summits over that of the sharpest valleys, if the surface is rounded nearly everywhere and no tip radius was given.
+    /// Curvature of the sharpest summits over that of the sharpest valleys, if the surface is rounded nearly
+    /// everywhere and no tip radius was given.
     pub curvature_ratio: Option<f64>,
 }
 
-/// Exponent of the spectral density above which short wavelengths are noise. Offsets of scan lines alone have -1, self-affine surfaces less than -2.
+/// Exponent of the spectral density above which short wavelengths are noise. Offsets of scan lines alone have
+/// -1, self-affine surfaces less than -2.
 const NOISE_EXPONENT: f64 = -1.0;
 
 impl SurfaceHeader {
-    /// Columns that state the artefacts of a measured surface, as fractions of its points and rms height; empty if they are unknown.
+    /// Columns that state the artefacts of a measured surface, as fractions of its points and rms height;
+    /// empty if they are unknown.
     #[must_use]
     pub fn artefact_columns(&self) -> Vec<(&'static str, Option<f64>)> {
-        let Some((measured, quality)) = self.measured.as_ref().and_then(|of| of.quality.as_ref().map(|quality| (of, quality))) else {
+        let Some((measured, quality)) =
+            self.measured.as_ref().and_then(|of| of.quality.as_ref().map(|quality| (of, quality)))
+        else {
             return Vec::new();
         };
         let points: u64 = measured.source_point_counts.iter().product();
         let noise = quality.noise_exponent.filter(|exponent| *exponent > NOISE_EXPONENT);
         vec![
-            ("outlier_share", Some(if quality.outlier_effect > 1.0 { quality.outlier_left_count as f64 / points as f64 } else { 0.0 })),
+            (
+                "outlier_share",
+                Some(if quality.outlier_effect > 1.0 {
+                    quality.outlier_left_count as f64 / points as f64
+                } else {
+                    0.0
+                }),
+            ),
             ("line_jump_share", Some(quality.line_jump_m / self.rms_height_m)),
             ("noise_share", Some(noise.map_or(0.0, |_| measured.noise_m / self.rms_height_m))),
             ("curvature_ratio", quality.curvature_ratio),
@@ -449,7 +481,10 @@ pub(super) fn write_quality(file: &File, of: &Quality) -> Result<(), Cause> {
     write_finite(file, "outlier_effect", of.outlier_effect)?;
     write_word(file, "line_axis", of.line_axis.word())?;
     write_finite(file, "line_jump_m", of.line_jump_m)?;
-    optional(of).into_iter().filter_map(|(name, value)| Some((name, value?))).try_for_each(|(name, value)| write_finite(file, name, value))
+    optional(of)
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value?)))
+        .try_for_each(|(name, value)| write_finite(file, name, value))
 }
 
 /// The artefacts in a file; nothing in files of versions that did not look for any.

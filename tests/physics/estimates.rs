@@ -9,7 +9,9 @@ use hysteron::physics::surface::summits::{Summit, find_summits};
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use hysteron::physics::theory::approximate_jkr::{CurvePoint, adhesive_curve, curve_loop};
 use hysteron::physics::theory::estimates::{CycleEstimates, DengKesari, Ratios, Roughness, SurfaceEstimates};
-use hysteron::physics::theory::flattening::{RelativeFlattening, flattening, measured_flattening, realised_flattening, shortest_wavelength};
+use hysteron::physics::theory::flattening::{
+    RelativeFlattening, flattening, measured_flattening, realised_flattening, shortest_wavelength,
+};
 use hysteron::physics::theory::{adhesionless_area, dalvi_loss, deng_kesari_loss_as_printed, pinning_loss};
 use ndarray::Array2;
 

@@ -31,21 +31,33 @@ pub(super) fn schemas(file: Option<&str>, write: bool, force: bool) -> Result<u8
         // Only a clone has pages to renew.
         let is_clone = Path::new(GUIDE).is_dir();
         let wanted = files.into_iter().filter(|(path, _)| !path.starts_with(GUIDE) || is_clone);
-        let files: Vec<(PathBuf, Vec<u8>)> = wanted.map(|(path, content)| (path, content.into_bytes())).collect();
+        let files: Vec<(PathBuf, Vec<u8>)> =
+            wanted.map(|(path, content)| (path, content.into_bytes())).collect();
         may_replace("a schema", &files, force || is_clone)?;
         files.iter().try_for_each(|(path, _)| make_folder(path.parent().unwrap_or(path)))?;
         written("write a schema", &files)?;
         return Ok(0);
     }
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let chosen = |path: &Path| file.map_or_else(|| path.extension().is_some_and(|end| end == "json"), |file| name(path) == file);
-    let chosen: Vec<_> = files.iter().filter(|(path, _)| chosen(path)).map(|(_, content)| content.as_str()).collect();
+    let chosen = |path: &Path| {
+        file.map_or_else(|| path.extension().is_some_and(|end| end == "json"), |file| name(path) == file)
+    };
+    let chosen: Vec<_> =
+        files.iter().filter(|(path, _)| chosen(path)).map(|(_, content)| content.as_str()).collect();
     if chosen.is_empty() {
         let names: Vec<String> = files.iter().map(|(path, _)| name(path)).collect();
-        return Err(failed(format!("unknown file {}\nhelp: one of {}", file.unwrap_or_default(), names.join(", "))));
+        return Err(failed(format!(
+            "unknown file {}\nhelp: one of {}",
+            file.unwrap_or_default(),
+            names.join(", ")
+        )));
     }
     // A single file is printed with its own bytes.
-    say(&if file.is_some() { chosen.concat() } else { chosen.iter().map(|content| format!("{content}\n")).collect() })?;
+    say(&if file.is_some() {
+        chosen.concat()
+    } else {
+        chosen.iter().map(|content| format!("{content}\n")).collect()
+    })?;
     Ok(0)
 }
 
@@ -54,7 +66,11 @@ const PAGE_MARK: &str = "\n.TH hysteron";
 
 /// The manual pages of the program and of all commands, in a folder.
 fn pages(folder: &Path) -> std::io::Result<Vec<(PathBuf, Vec<u8>)>> {
-    fn enter(command: &clap::Command, folder: &Path, pages: &mut Vec<(PathBuf, Vec<u8>)>) -> std::io::Result<()> {
+    fn enter(
+        command: &clap::Command,
+        folder: &Path,
+        pages: &mut Vec<(PathBuf, Vec<u8>)>,
+    ) -> std::io::Result<()> {
         for inner in command.get_subcommands().filter(|inner| !inner.is_hide_set()) {
             enter(inner, folder, pages)?;
         }

@@ -24,7 +24,8 @@ pub(super) fn explain(asked: &FolderArguments, id: &str, spec: Option<&Path>) ->
     let explanations = campaign.explain(id);
     if explanations.is_empty() {
         return Err(failed(format!(
-            "cannot explain {id}: unknown task of the spec and of {}\nhelp: name `{}`, `{}`, or an id listed by `hysteron status {} --json`",
+            "cannot explain {id}: unknown task of the spec and of {}\nhelp: name `{}`, `{}`, or an id listed \
+             by `hysteron status {} --json`",
             shown(&dir),
             crate::campaign::STATISTICS,
             crate::campaign::REPORT_PAGE,
@@ -43,7 +44,10 @@ pub(super) fn explain(asked: &FolderArguments, id: &str, spec: Option<&Path>) ->
 
 fn sentences(explanation: &Explanation) -> String {
     let Explanation { stage, id, state, why, nearest, differences } = explanation;
-    let mut text = format!("{stage} {id} is {state}{}\n", why.as_ref().map_or_else(String::new, |why| format!(": {why}")));
+    let mut text = format!(
+        "{stage} {id} is {state}{}\n",
+        why.as_ref().map_or_else(String::new, |why| format!(": {why}"))
+    );
     let Some(nearest) = nearest else {
         if *state == "planned" {
             text += "  not computed yet; no finished task of another spec to compare with\n";
@@ -59,11 +63,15 @@ fn sentences(explanation: &Explanation) -> String {
     }
     text += &format!("  {role} {nearest}, which differs in\n");
     let width = differences.iter().map(|difference| difference.field.len()).max().unwrap_or(0);
-    let value = |value: &Option<Value>| value.as_ref().map_or_else(|| "nothing".to_owned(), ToString::to_string);
+    let value =
+        |value: &Option<Value>| value.as_ref().map_or_else(|| "nothing".to_owned(), ToString::to_string);
     for difference in differences {
         let (here, there) = (value(&difference.here), value(&difference.there));
         let (requested, existing) = if orphan { (there, here) } else { (here, there) };
-        text += &format!("  {:width$}  requested {requested}, existing {existing} (read by {})\n", difference.field, difference.read_by);
+        text += &format!(
+            "  {:width$}  requested {requested}, existing {existing} (read by {})\n",
+            difference.field, difference.read_by
+        );
     }
     text
 }
@@ -78,15 +86,21 @@ pub(super) fn verify(asked: &FolderArguments, deep: bool) -> Result<u8, Fault> {
         for fault in &audit.faults {
             say(&format!("{}\n", visible(fault)))?;
         }
-        say(&listed(&audit.unreceipted, "task has results and no receipt", "tasks have results and no receipt"))?;
+        say(&listed(
+            &audit.unreceipted,
+            "task has results and no receipt",
+            "tasks have results and no receipt",
+        ))?;
         say(&listed(&audit.unnamed, "file is named by no receipt", "files are named by no receipt"))?;
         let compared = if deep { "contents" } else { "sizes" };
-        let counts = [(audit.receipt_count, "receipt"), (audit.file_count, "file")].map(|(count, noun)| counted(count, noun));
+        let counts = [(audit.receipt_count, "receipt"), (audit.file_count, "file")]
+            .map(|(count, noun)| counted(count, noun));
         say(&format!("{}, {}: {compared} compared, ", counts.join(", "), HumanBytes(audit.size_bytes)))?;
         say(&match faults {
             0 => "no fault.\n".to_owned(),
             faults => format!(
-                "{}. `hysteron run` with the spec repairs its own tasks; remove other files by hand or with `hysteron gc`.\n",
+                "{}. `hysteron run` with the spec repairs its own tasks; remove other files by hand or with \
+                 `hysteron gc`.\n",
                 counted(faults, "fault")
             ),
         })?;
@@ -117,23 +131,28 @@ pub(super) fn gc(asked: &FolderArguments, keep: &[PathBuf], delete: bool) -> Res
         let dir = shown(&dir);
         return Err(failed(format!("cannot clean {dir}: {why}\nhelp: run `hysteron run SPEC` first")));
     }
-    let others = keep.iter().map(|spec| open(spec, &output(&dir))).collect::<Result<Vec<Campaign>, Fault>>()?;
+    let others =
+        keep.iter().map(|spec| open(spec, &output(&dir))).collect::<Result<Vec<Campaign>, Fault>>()?;
     let leftovers = campaign.leftovers(&others);
     let bytes: u64 = leftovers.iter().map(|left| left.size_bytes).sum();
-    let name = |left: &Leftover| left.path.strip_prefix(&dir).unwrap_or(&left.path).to_string_lossy().into_owned();
+    let name =
+        |left: &Leftover| left.path.strip_prefix(&dir).unwrap_or(&left.path).to_string_lossy().into_owned();
     if delete {
         for left in &leftovers {
             left.remove().map_err(|error| {
                 failed(format!(
-                    "cannot delete {}: {error}\nhelp: the files listed before it are deleted; repeat the command for the others",
+                    "cannot delete {}: {error}\nhelp: the files listed before it are deleted; repeat the \
+                     command for the others",
                     shown(&left.path)
                 ))
             })?;
         }
     }
     if asked.json {
-        let units: Vec<Value> =
-            leftovers.iter().map(|left| json!({ "path": name(left), "size_bytes": left.size_bytes, "why": left.why })).collect();
+        let units: Vec<Value> = leftovers
+            .iter()
+            .map(|left| json!({ "path": name(left), "size_bytes": left.size_bytes, "why": left.why }))
+            .collect();
         say(&format!("{:#}\n", json!({ "deleted": delete, "size_bytes": bytes, "leftovers": units })))?;
         return Ok(0);
     }
@@ -143,7 +162,9 @@ pub(super) fn gc(asked: &FolderArguments, keep: &[PathBuf], delete: bool) -> Res
     say(&match (leftovers.len(), delete) {
         (0, _) => "Nothing is left over: all files are referenced.\n".to_owned(),
         (count, true) => format!("{count} deleted, {}.\n", HumanBytes(bytes)),
-        (count, false) => format!("{count} left over, {}; nothing was deleted. Delete with --delete.\n", HumanBytes(bytes)),
+        (count, false) => {
+            format!("{count} left over, {}; nothing was deleted. Delete with --delete.\n", HumanBytes(bytes))
+        }
     })?;
     Ok(0)
 }

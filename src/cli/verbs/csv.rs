@@ -25,14 +25,16 @@ pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
              help: run `hysteron run SPEC` first, or name the folder of a comparison"
         )));
     }
-    let mut wanted: Vec<(PathBuf, &'static Table)> = tables.into_iter().map(|table| (PathBuf::from(table.file), table)).collect();
+    let mut wanted: Vec<(PathBuf, &'static Table)> =
+        tables.into_iter().map(|table| (PathBuf::from(table.file), table)).collect();
     if asked.cycles {
         wanted.extend(of_cycles(&dir)?);
     }
     if let Some(run) = run_around(&out.join("cases.csv")) {
         let (out, run) = (shown(&out), shown(&run));
         return Err(failed(format!(
-            "cannot write the tables to {out}: only `hysteron run` writes there, in {run}\nhelp: use another --out"
+            "cannot write the tables to {out}: only `hysteron run` writes there, in {run}\nhelp: use another \
+             --out"
         )));
     }
     let (mut files, mut contents) = (Vec::new(), Vec::new());
@@ -49,7 +51,10 @@ pub(super) fn export(asked: &CsvArguments) -> Result<u8, Fault> {
     }
     written("write the table", &contents)?;
     if asked.json {
-        let files: Vec<_> = files.iter().map(|(path, rows)| json!({ "file": path.display().to_string(), "row_count": rows })).collect();
+        let files: Vec<_> = files
+            .iter()
+            .map(|(path, rows)| json!({ "file": path.display().to_string(), "row_count": rows }))
+            .collect();
         say(&format!("{:#}\n", json!({ "files": files })))?;
         return Ok(0);
     }
@@ -73,12 +78,18 @@ fn of_cycles(dir: &Path) -> Result<Vec<(PathBuf, &'static Table)>, Fault> {
     let refused = |error: io::Error| failed(format!("cannot list {}: {error}", shown(&folder)));
     let mut ids = Vec::new();
     // A run whose cycles have all failed has no such folder.
-    for entry in if folder.is_dir() { Some(fs::read_dir(&folder).map_err(refused)?) } else { None }.into_iter().flatten() {
+    for entry in if folder.is_dir() { Some(fs::read_dir(&folder).map_err(refused)?) } else { None }
+        .into_iter()
+        .flatten()
+    {
         ids.push(entry.map_err(refused)?.file_name());
     }
     ids.sort();
-    let names = || TABLES.iter().filter_map(|table| table.file.strip_prefix(OF_CYCLE).map(|name| (name, *table)));
-    let files = ids.iter().flat_map(|id| names().map(move |(name, table)| (Path::new("cycles").join(id).join(name), table)));
+    let names =
+        || TABLES.iter().filter_map(|table| table.file.strip_prefix(OF_CYCLE).map(|name| (name, *table)));
+    let files = ids
+        .iter()
+        .flat_map(|id| names().map(move |(name, table)| (Path::new("cycles").join(id).join(name), table)));
     Ok(files.filter(|(file, _)| dir.join(file).is_file()).collect())
 }
 

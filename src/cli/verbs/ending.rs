@@ -32,10 +32,23 @@ pub(super) struct Ended<'a> {
 }
 
 impl<'a> Ended<'a> {
-    pub(super) fn of(campaign: &'a Campaign, shard: Shard, tallies: &'a [(Stage, Tally)], time: Duration) -> Self {
+    pub(super) fn of(
+        campaign: &'a Campaign,
+        shard: Shard,
+        tallies: &'a [(Stage, Tally)],
+        time: Duration,
+    ) -> Self {
         let failed_count = tallies.iter().map(|(_, tally)| tally.failed).max().unwrap_or(0);
         let failures = if failed_count > 0 { failures(campaign, shard) } else { Vec::new() };
-        Self { campaign, tallies, time, size_bytes: size(&campaign.dir), failed_count, failures, unreached: unreached(campaign, shard) }
+        Self {
+            campaign,
+            tallies,
+            time,
+            size_bytes: size(&campaign.dir),
+            failed_count,
+            failures,
+            unreached: unreached(campaign, shard),
+        }
     }
 
     /// True if requested results have failed or are not reached.
@@ -59,7 +72,13 @@ impl<'a> Ended<'a> {
         let mut text = if until >= Stage::Aggregate { self.results(warnings)? } else { String::new() };
         for (stage, t) in self.tallies.iter().filter(|_| !self.is_idle()) {
             let lost = if t.failed > 0 { format!(", {} failed", t.failed) } else { String::new() };
-            text += &format!("{:9} {} of {} computed, {} done before{lost}\n", stage.word(), t.computed, t.planned, t.before);
+            text += &format!(
+                "{:9} {} of {} computed, {} done before{lost}\n",
+                stage.word(),
+                t.computed,
+                t.planned,
+                t.before
+            );
         }
         if self.failed_count > 0 {
             text += &failed_cycles(self.failed_count, &self.campaign.dir);
@@ -70,14 +89,22 @@ impl<'a> Ended<'a> {
         let computed: usize = self.tallies.iter().map(|(_, tally)| tally.computed).sum();
         let planned: usize = self.tallies.iter().map(|(_, tally)| tally.planned).sum();
         text += &if self.is_idle() {
-            format!("Nothing to do: {} done before. Size of the output folder: {size}\n", counted(planned, "task"))
+            format!(
+                "Nothing to do: {} done before. Size of the output folder: {size}\n",
+                counted(planned, "task")
+            )
         } else {
-            format!("{} in {}. Size of the output folder: {size}\n", counted(computed, "task"), duration(self.time))
+            format!(
+                "{} in {}. Size of the output folder: {size}\n",
+                counted(computed, "task"),
+                duration(self.time)
+            )
         };
         let dir = shown(&self.campaign.dir);
         text += &match until {
             Stage::Report => format!(
-                "Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\n{}To open it: {} report {} --open\n",
+                "Report: {dir}/report.html\nTables: {dir}/statistics/*.parquet\n{}To open it: {} report {} \
+                 --open\n",
                 self.formats(),
                 program(),
                 shell_path(&self.campaign.dir)
@@ -89,15 +116,22 @@ impl<'a> Ended<'a> {
 
     /// Formats of the figures that this build does not write.
     fn formats(&self) -> String {
-        let left_out: Vec<String> = self.campaign.spec.figures.left_out().iter().map(|format| format.to_uppercase()).collect();
+        let left_out: Vec<String> =
+            self.campaign.spec.figures.left_out().iter().map(|format| format.to_uppercase()).collect();
         let needs = if left_out.len() == 1 { "needs" } else { "need" };
-        let text = || format!("Figures: SVG; {} {needs} a build with `--features raster`.\n", left_out.join(" and "));
+        let text = || {
+            format!("Figures: SVG; {} {needs} a build with `--features raster`.\n", left_out.join(" and "))
+        };
         if left_out.is_empty() { String::new() } else { text() }
     }
 
     /// Warnings of the cases, once they are known.
     pub(super) fn warnings(&self, until: Stage) -> Result<String, Fault> {
-        if until < Stage::Aggregate { Ok(String::new()) } else { warning_text(&self.cases()?).map_err(failed) }
+        if until < Stage::Aggregate {
+            Ok(String::new())
+        } else {
+            warning_text(&self.cases()?).map_err(failed)
+        }
     }
 
     fn cases(&self) -> Result<Frame, Fault> {
@@ -120,8 +154,10 @@ impl<'a> Ended<'a> {
         if self.unreached.is_empty() {
             return String::new();
         }
-        let mut text =
-            format!("{} of finished cycles not reached; their other loads have results.\n", counted(self.unreached.len(), "load"));
+        let mut text = format!(
+            "{} of finished cycles not reached; their other loads have results.\n",
+            counted(self.unreached.len(), "load")
+        );
         for (id, max_load, why) in self.unreached.iter().take(LISTED) {
             let why = visible(why.lines().next().unwrap_or_default());
             text += &wrapped(&format!("  {id}, F_max/(E* A0) = {max_load}: {why}"), "    ");
@@ -160,8 +196,11 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
         })
         .collect();
     let failures: Vec<_> = ended.failures.iter().map(|(id, why)| json!({ "id": id, "why": why })).collect();
-    let unreached: Vec<_> =
-        ended.unreached.iter().map(|(id, max_load, why)| json!({ "id": id, "max_load": max_load, "why": why })).collect();
+    let unreached: Vec<_> = ended
+        .unreached
+        .iter()
+        .map(|(id, max_load, why)| json!({ "id": id, "max_load": max_load, "why": why }))
+        .collect();
     let answer = json!({
         "name": ended.campaign.spec.name,
         "dir": ended.campaign.dir.display().to_string(),
@@ -188,7 +227,11 @@ pub(super) fn failed_cycles(failures: usize, dir: &Path) -> String {
 
 /// Failed cycles of a shard with their reasons.
 fn failures(campaign: &Campaign, shard: Shard) -> Vec<(String, String)> {
-    let cycles = campaign.survey(Check::Sizes).cycles.into_iter().filter(|(place, _)| shard.holds(campaign.cycles[*place].surface));
+    let cycles = campaign
+        .survey(Check::Sizes)
+        .cycles
+        .into_iter()
+        .filter(|(place, _)| shard.holds(campaign.cycles[*place].surface));
     let failed = cycles.filter_map(|(place, standing)| match standing {
         Standing::Failed(why) => Some((campaign.cycles[place].id.clone(), why)),
         _ => None,

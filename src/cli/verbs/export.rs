@@ -17,14 +17,20 @@ use std::time::SystemTime;
 /// Mark of an exported Snakefile.
 const SNAKEFILE_MARK: &str = "`hysteron export snakemake` wrote this file.";
 
-pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u32>, force: bool) -> Result<u8, Fault> {
+pub(super) fn snakemake(
+    spec: &Path,
+    output: &OutputArguments,
+    shards: Option<u32>,
+    force: bool,
+) -> Result<u8, Fault> {
     let mut campaign = open(spec, output)?;
     campaign.dir = told(&campaign.dir)?;
     stages::prepare(&campaign).map_err(failed)?;
     let folder = campaign.dir.join("snakemake");
     make_folder(&folder)?;
     let program = own_file()?;
-    let origin = Origin { spec: &told(&spec_file(spec))?, settings: &output.set, folder: &told(Path::new("."))? };
+    let origin =
+        Origin { spec: &told(&spec_file(spec))?, settings: &output.set, folder: &told(Path::new("."))? };
     let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
     let path = folder.join("Snakefile");
     let files = [(path.clone(), rules::snakefile(&campaign, &origin, &program, shards).into_bytes())];
@@ -34,13 +40,25 @@ pub(super) fn snakemake(spec: &Path, output: &OutputArguments, shards: Option<u3
     if output.json {
         say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "shard_count": shards })))?;
     } else {
-        say(&format!("Written: {}\nRun it with `snakemake --snakefile {} --cores 2`\n", shown(&path), shell_path(&path)))?;
+        say(&format!(
+            "Written: {}\nRun it with `snakemake --snakefile {} --cores 2`\n",
+            shown(&path),
+            shell_path(&path)
+        ))?;
     }
     Ok(0)
 }
 
-pub(super) fn ro_crate(asked: &FolderArguments, license: Option<&str>, publisher: Option<&str>, force: bool) -> Result<u8, Fault> {
-    let license = license.map(description::licence).transpose().map_err(|text| Fault { code: BAD_SPEC, text: format!("error: {text}") })?;
+pub(super) fn ro_crate(
+    asked: &FolderArguments,
+    license: Option<&str>,
+    publisher: Option<&str>,
+    force: bool,
+) -> Result<u8, Fault> {
+    let license = license
+        .map(description::licence)
+        .transpose()
+        .map_err(|text| Fault { code: BAD_SPEC, text: format!("error: {text}") })?;
     let dir = folder(asked)?;
     let campaign = open_dir("describe", &dir)?;
     let audit = campaign.audit(Check::Contents);
@@ -53,7 +71,8 @@ help: `hysteron verify {} --deep` lists all faults; `hysteron run {}` repairs it
             shell_path(&dir)
         )));
     }
-    let day: String = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().chars().take(10).collect();
+    let day: String =
+        humantime::format_rfc3339_seconds(SystemTime::now()).to_string().chars().take(10).collect();
     let publication = Publication { day: &day, licence: license.as_deref(), publisher };
     let text = description::metadata(&campaign, &campaign.all_receipts(), &publication);
     let path = dir.join("ro-crate-metadata.json");
@@ -61,7 +80,10 @@ help: `hysteron verify {} --deep` lists all faults; `hysteron run {}` repairs it
     may_replace("the metadata", &files, force)?;
     written("write the metadata", &files)?;
     if asked.json {
-        say(&format!("{:#}\n", json!({ "file": path.display().to_string(), "file_count": audit.file_count })))?;
+        say(&format!(
+            "{:#}\n",
+            json!({ "file": path.display().to_string(), "file_count": audit.file_count })
+        ))?;
         return Ok(0);
     }
     say(&format!("Written: {}, which describes {}.\n", shown(&path), counted(audit.file_count, "file")))?;

@@ -43,12 +43,18 @@ pub(super) fn findings(runs: &[PathBuf], as_json: bool) -> Result<u8, Fault> {
              help: sweep `cycle.max_load`, `surface.magnification` or `surface.hurst`, as pipelines/readings.toml does"
         )));
     }
-    say(&if as_json { format!("{:#}\n", json!({ "findings": FINDINGS, "readings": as_values(&readings) })) } else { table(&readings) })?;
+    say(&if as_json {
+        format!("{:#}\n", json!({ "findings": FINDINGS, "readings": as_values(&readings) }))
+    } else {
+        table(&readings)
+    })?;
     Ok(0)
 }
 
 fn as_values(readings: &[(String, Reading)]) -> Vec<Value> {
-    let judged = |judged: &Option<Judged>| judged.as_ref().map(|of| json!({ "verdict": of.verdict.word(), "numbers": of.numbers }));
+    let judged = |judged: &Option<Judged>| {
+        judged.as_ref().map(|of| json!({ "verdict": of.verdict.word(), "numbers": of.numbers }))
+    };
     let value = |(run, reading): &(String, Reading)| {
         json!({
             "run": run, "name": reading.name, "case_ids": reading.case_ids,
@@ -69,16 +75,28 @@ fn line(cells: impl Iterator<Item = String>) -> String {
 fn table(readings: &[(String, Reading)]) -> String {
     let mut text = line((1..=FINDINGS.len()).map(|number| number.to_string()));
     for (run, reading) in readings {
-        let name = [run.as_str(), &reading.name].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(": ");
+        let name = [run.as_str(), &reading.name]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join(": ");
         let name = if name.is_empty() { "all cases".to_owned() } else { name };
         let failed = if reading.failed_count > 0 {
-            format!(" ({} of {} failed)", reading.failed_count, counted(usize::try_from(reading.planned_count).unwrap_or(0), "cycle"))
+            format!(
+                " ({} of {} failed)",
+                reading.failed_count,
+                counted(usize::try_from(reading.planned_count).unwrap_or(0), "cycle")
+            )
         } else {
             String::new()
         };
         text += &format!("\n{}", wrapped(&visible(&format!("{name}{failed}")), ""));
-        for cell in [|judged: &Judged| judged.verdict.word().to_owned(), |judged: &Judged| judged.text.clone()] {
-            text += &line(reading.findings.iter().map(|judged| judged.as_ref().map_or_else(|| "–".to_owned(), cell)));
+        for cell in
+            [|judged: &Judged| judged.verdict.word().to_owned(), |judged: &Judged| judged.text.clone()]
+        {
+            text += &line(
+                reading.findings.iter().map(|judged| judged.as_ref().map_or_else(|| "–".to_owned(), cell)),
+            );
         }
     }
     text += "\n";

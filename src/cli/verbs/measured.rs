@@ -1,4 +1,5 @@
-//! `import`: a measured surface as the model takes it, and what its spectrum says; and `export` of surfaces to other programs.
+//! `import`: a measured surface as the model takes it, and what its spectrum says; and `export` of surfaces
+//! to other programs.
 
 mod quality;
 mod range;
@@ -26,21 +27,35 @@ pub(in crate::cli) const LIMITS: Constants = Constants {
     subject: "Warnings of `import`",
     module: "cli",
     rows: &[
-        Constant::new("part outside the central square", &[text::DROPPED], "of the scan", "With more, the warning `crop` is printed.", ""),
-        Constant::new("rms slope", &[text::FLAT, text::STEEP], "", "Outside this range the units are probably wrong.", ""),
+        Constant::new(
+            "part outside the central square",
+            &[text::DROPPED],
+            "of the scan",
+            "With more, the warning `crop` is printed.",
+            "",
+        ),
+        Constant::new(
+            "rms slope",
+            &[text::FLAT, text::STEEP],
+            "",
+            "Outside this range the units are probably wrong.",
+            "",
+        ),
         Constant::new("rms height", &[text::LOW_M], "m", "Below it the units are probably wrong.", ""),
     ],
 };
 
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
-    let refused = |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));
+    let refused =
+        |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));
     recognize(&asked.file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
     let digest = digest_of_file(&asked.file).map_err(|error| refused(&error))?;
     let params = params(asked)?;
     if params.periodic && params.detrend != Detrend::Mean {
         let shape = params.detrend.word();
         let text = format!(
-            "error: --detrend {shape} with --periodic: the removed shape is not periodic\nhelp: leave --detrend out, or --periodic"
+            "error: --detrend {shape} with --periodic: the removed shape is not periodic\nhelp: leave \
+             --detrend out, or --periodic"
         );
         return Err(Fault { code: BAD_SPEC, text });
     }
@@ -49,7 +64,8 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
             return Err(refused(&format!("--{name} is {length}\nhelp: give a positive number of metres")));
         }
     }
-    let Imported { prepared, header, height_factor_m, notes } = measure(&params, &digest, "").map_err(failed)?;
+    let Imported { prepared, header, height_factor_m, notes } =
+        measure(&params, &digest, "").map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
     if !asked.dry_run {
         may_be_written("the surface", &out, &asked.file, asked.force)?;
@@ -61,7 +77,15 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let written = (!asked.dry_run).then_some(out.as_path());
     let range = Range::of(&examined);
     let counts = [prepared.heights_m.nrows(), examined.estimates.summit_count, examined.edge_count];
-    let statistics = Statistics { file: &asked.file, header: &header, height_factor_m, notes: &notes, range: &range, counts, written };
+    let statistics = Statistics {
+        file: &asked.file,
+        header: &header,
+        height_factor_m,
+        notes: &notes,
+        range: &range,
+        counts,
+        written,
+    };
     if asked.json {
         let rings: Vec<Value> = prepared
             .rings
@@ -108,13 +132,15 @@ fn size_m(asked: &ImportArguments) -> Result<[f64; 2], Fault> {
         Some([x]) => Ok([*x, 0.0]),
         Some([x, y]) => Ok([*x, *y]),
         _ => {
-            let help = "give the size along x, or along x and y, with a unit of length (5um, \"5um x 3um\") or in metres (5e-6)";
+            let help = "give the size along x, or along x and y, with a unit of length (5um, \"5um x 3um\") \
+                 or in metres (5e-6)";
             Err(failed(format!("cannot import {}: --size is {text:?}\nhelp: {help}", asked.file.display())))
         }
     }
 }
 
-/// `<name of the file>.h5` in the present folder, and of one in HDF5 `<name of the file>_taken.h5`, which is not the file itself.
+/// `<name of the file>.h5` in the present folder, and of one in HDF5 `<name of the file>_taken.h5`, which is
+/// not the file itself.
 fn named_after(file: &Path) -> PathBuf {
     let mut name = file.file_stem().unwrap_or(file.as_os_str()).to_owned();
     let own = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("h5"));
@@ -142,7 +168,11 @@ pub(super) fn export(asked: &ExportArguments, layout: &Layout) -> Result<u8, Fau
         }
         Layout::Tamaas => {
             write_tamaas(&asked.out, heights.view(), size).map_err(failed)?;
-            if header.periodic { "" } else { "warning: Tamaas assumes a periodic surface; this one is not periodic\n" }
+            if header.periodic {
+                ""
+            } else {
+                "warning: Tamaas assumes a periodic surface; this one is not periodic\n"
+            }
         }
     };
     say(&format!("Written: {}\n{note}", asked.out.display()))?;

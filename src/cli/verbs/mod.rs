@@ -55,7 +55,9 @@ pub(super) fn perform(verb: &Verb) -> ExitCode {
 fn jobs(verb: &Verb) -> Option<&JobsArguments> {
     match verb {
         Verb::Run { campaign, .. } | Verb::Aggregate { campaign, .. } => Some(&campaign.how.jobs),
-        Verb::Generate(campaign) | Verb::Extract(campaign) | Verb::Cycle(campaign) => Some(&campaign.how.jobs),
+        Verb::Generate(campaign) | Verb::Extract(campaign) | Verb::Cycle(campaign) => {
+            Some(&campaign.how.jobs)
+        }
         Verb::Report { campaign, .. } => Some(&campaign.jobs),
         Verb::Retry { jobs, .. } => Some(jobs),
         _ => None,
@@ -72,7 +74,9 @@ fn started(verb: &Verb) -> Result<(), Fault> {
         }
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(limits::threads(jobs.and_then(|jobs| jobs.jobs)));
-    pool.build_global().map_err(|error| failed(format!("cannot start the threads: {error}\nhelp: ask for fewer of them (--jobs N)")))
+    pool.build_global().map_err(|error| {
+        failed(format!("cannot start the threads: {error}\nhelp: ask for fewer of them (--jobs N)"))
+    })
 }
 
 fn performed(verb: &Verb) -> Result<u8, Fault> {
@@ -97,7 +101,9 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
             let runs: Vec<PathBuf> = spec.iter().chain(compare).cloned().collect();
             work::compare(&runs, campaign.output.out.as_deref(), *force, campaign.output.json, *open)
         }
-        Verb::Compare(asked) => work::compare(&asked.runs, asked.out.as_deref(), asked.force, asked.json, asked.open),
+        Verb::Compare(asked) => {
+            work::compare(&asked.runs, asked.out.as_deref(), asked.force, asked.json, asked.open)
+        }
         Verb::Findings(asked) => findings::findings(&asked.runs, asked.json),
         Verb::Show { folder, id } => show::show(folder, id),
         Verb::Plan { spec, output } => survey::plan(spec, output),
@@ -116,8 +122,12 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         Verb::Export { what: ExportVerb::RoCrate { folder, license, publisher, force } } => {
             export::ro_crate(folder, license.as_deref(), publisher.as_deref(), *force)
         }
-        Verb::Export { what: ExportVerb::Netcdf(asked) } => measured::export(asked, &measured::Layout::NetCdf),
-        Verb::Export { what: ExportVerb::Tamaas(asked) } => measured::export(asked, &measured::Layout::Tamaas),
+        Verb::Export { what: ExportVerb::Netcdf(asked) } => {
+            measured::export(asked, &measured::Layout::NetCdf)
+        }
+        Verb::Export { what: ExportVerb::Tamaas(asked) } => {
+            measured::export(asked, &measured::Layout::Tamaas)
+        }
         Verb::Import(asked) => measured::import(asked),
         Verb::Schema { file, write, force } => about::schemas(file.as_deref(), *write, *force),
         Verb::Completions { shell } => about::completions(*shell),
@@ -139,7 +149,8 @@ fn stage(argument: StageArgument) -> Stage {
     }
 }
 
-/// Prints to standard output, control characters as escapes. Returns whether the output is still read: a closed pipe (`| head`) is no error.
+/// Prints to standard output, control characters as escapes. Returns whether the output is still read: a
+/// closed pipe (`| head`) is no error.
 fn say(text: &str) -> Result<bool, Fault> {
     let mut output = std::io::stdout().lock();
     let text = painted(printable(text), output.is_terminal());
@@ -151,7 +162,8 @@ fn say(text: &str) -> Result<bool, Fault> {
 }
 
 fn make_folder(folder: &Path) -> Result<(), Fault> {
-    std::fs::create_dir_all(folder).map_err(|error| failed(format!("cannot make the folder {}: {error}", shown(folder))))
+    std::fs::create_dir_all(folder)
+        .map_err(|error| failed(format!("cannot make the folder {}: {error}", shown(folder))))
 }
 
 /// The path of this program, for other programs that start it.

@@ -46,7 +46,8 @@ fn read(spec: &Path, out: Option<&Path>, settings: &[String]) -> Result<Campaign
 }
 
 fn parsed(spec: &Path, settings: &[String]) -> Result<Spec, Fault> {
-    Spec::read_choosing(spec, settings, &stages::chosen_method).map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })
+    Spec::read_choosing(spec, settings, &stages::chosen_method)
+        .map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })
 }
 
 /// The output folder of a spec without --out.
@@ -57,7 +58,10 @@ fn usual(spec: &Spec) -> PathBuf {
 /// The output folder that a command is given: itself, or a spec and its folder.
 pub(super) fn folder(asked: &FolderArguments) -> Result<PathBuf, Fault> {
     if asked.out.is_some() && asked.dir.is_dir() {
-        let text = format!("error: {} is a folder, and --out names another one\nhelp: name one of the two", shown(&asked.dir));
+        let text = format!(
+            "error: {} is a folder, and --out names another one\nhelp: name one of the two",
+            shown(&asked.dir)
+        );
         return Err(Fault { code: BAD_SPEC, text });
     }
     match &asked.out {
@@ -77,7 +81,8 @@ pub(super) fn open_dir(action: &str, dir: &Path) -> Result<Campaign, Fault> {
     if !path.is_file() {
         let shown = shown(dir);
         return Err(failed(format!(
-            "cannot {action} {shown}: it has no {RESOLVED}\nhelp: name the output folder of a run, or a spec that was run"
+            "cannot {action} {shown}: it has no {RESOLVED}\nhelp: name the output folder of a run, or a spec \
+             that was run"
         )));
     }
     read(&path, Some(dir), &[])
@@ -87,7 +92,11 @@ pub(super) fn open_dir(action: &str, dir: &Path) -> Result<Campaign, Fault> {
 pub(super) fn not_the_root(dir: &Path) -> Result<(), Fault> {
     match dir.canonicalize() {
         Ok(found) if found.parent().is_none() => {
-            let text = format!("error: the output folder cannot be {}, the root folder\nhelp: name another folder (--out DIR)", shown(dir));
+            let text = format!(
+                "error: the output folder cannot be {}, the root folder\nhelp: name another folder (--out \
+                 DIR)",
+                shown(dir)
+            );
             Err(Fault { code: BAD_SPEC, text })
         }
         _ => Ok(()),
@@ -101,7 +110,9 @@ pub(super) fn told(dir: &Path) -> Result<PathBuf, Fault> {
     let strange = |c: char| c.is_control() || matches!(c, '{' | '}' | '%' | '"' | '\\');
     match dir.to_str().map(|name| name.chars().find(|c| strange(*c))) {
         Some(None) => Ok(dir),
-        Some(Some(c)) => Err(refused(format!("its name has {c:?}\nhelp: use a path without control characters and without {{ }} % \" \\"))),
+        Some(Some(c)) => Err(refused(format!(
+            "its name has {c:?}\nhelp: use a path without control characters and without {{ }} % \" \\"
+        ))),
         None => Err(refused("its name is not Unicode\nhelp: use a path with a Unicode name".to_owned())),
     }
 }

@@ -3,7 +3,9 @@
 use super::outputs::undamaged;
 use super::place::{folder, open_dir};
 use super::{Fault, failed, say};
-use crate::campaign::{Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
+use crate::campaign::{
+    Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, SurfaceUnit, Unit,
+};
 use crate::cli::FolderArguments;
 use crate::model::SurfaceSource;
 use crate::schema::{self, Table};
@@ -47,7 +49,8 @@ pub(super) fn show(asked: &FolderArguments, id: &str) -> Result<u8, Fault> {
     let Some(found) = find(&campaign, id)? else {
         let (dir, listed) = (shown(&dir), shell_path(&dir));
         return Err(failed(format!(
-            "{dir} has no case or task {}\nhelp: `hysteron status {listed} --json` lists tasks, statistics/cases.parquet lists cases",
+            "{dir} has no case or task {}\nhelp: `hysteron status {listed} --json` lists tasks, \
+             statistics/cases.parquet lists cases",
             visible(id)
         )));
     };
@@ -73,21 +76,29 @@ fn find(campaign: &Campaign, id: &str) -> Result<Option<Shown>, Fault> {
     let survey = campaign.survey(Check::Sizes);
     let standing = if stage == Stage::Aggregate { survey.statistics } else { survey.report };
     let unit = Unit { stage, id, key: "" };
-    Ok(Some(Shown { kind: stage.word(), state: state(&standing), files: files(campaign, &unit), ..Shown::default() }))
+    Ok(Some(Shown {
+        kind: stage.word(),
+        state: state(&standing),
+        files: files(campaign, &unit),
+        ..Shown::default()
+    }))
 }
 
 fn of_case(campaign: &Campaign, place: usize, case: &CaseUnit) -> Result<Shown, Fault> {
     let cycles = campaign.cycles.iter().filter(|cycle| cycle.case == place);
-    let tasks: Vec<(String, String)> =
-        cycles.map(|cycle| (cycle.id.clone(), state(&campaign.cycle_standing(cycle, Check::Sizes)))).collect();
+    let tasks: Vec<(String, String)> = cycles
+        .map(|cycle| (cycle.id.clone(), state(&campaign.cycle_standing(cycle, Check::Sizes))))
+        .collect();
     let done = tasks.iter().filter(|(_, state)| state == Standing::Done.word()).count();
     let mut found = Shown::default();
     if let Some(frame) = table(campaign, &schema::CASES)? {
         let rows = rows(&frame, "case_id", &case.id)?;
         found.results = rows.iter().map(|row| values(&frame, *row)).collect();
         let warnings = warnings_of(&frame, &rows).map_err(failed)?;
-        found.warnings =
-            warnings.iter().map(|warning| format!("{}: {}. {}", warning.kind.label, warning.measured, warning.kind.action)).collect();
+        found.warnings = warnings
+            .iter()
+            .map(|warning| format!("{}: {}. {}", warning.kind.label, warning.measured, warning.kind.action))
+            .collect();
     }
     Ok(Shown {
         kind: "case",
@@ -215,11 +226,21 @@ fn described(id: &str, found: &Shown) -> String {
     section("Parameters", found.parameters.iter().map(|(key, value)| format!("{key} = {value}")).collect());
     for row in &found.results {
         let load = row.get("max_load").map(ToString::to_string).unwrap_or_default();
-        section(&format!("Results at F_max/(E* A0) = {load}"), RESULTS.iter().filter_map(|name| result(row, name)).collect());
+        section(
+            &format!("Results at F_max/(E* A0) = {load}"),
+            RESULTS.iter().filter_map(|name| result(row, name)).collect(),
+        );
     }
     section("Warnings", found.warnings.clone());
     section("Tasks", found.tasks.iter().map(|(id, state)| format!("{id}: {}", visible(state))).collect());
-    section("Files", found.files.iter().map(|file| format!("{} ({})", visible(&file.path), HumanBytes(file.size_bytes))).collect());
+    section(
+        "Files",
+        found
+            .files
+            .iter()
+            .map(|file| format!("{} ({})", visible(&file.path), HumanBytes(file.size_bytes)))
+            .collect(),
+    );
     text
 }
 

@@ -5,7 +5,9 @@ use super::place::{open, told};
 use super::{BAD_SPEC, FAILED_CASES, Fault, failed, make_folder, own_file, say};
 use crate::campaign::{Campaign, Stage, Standing, Survey};
 use crate::cli::OutputArguments;
-use crate::engines::slurm::{EARLY_S, Job, Order, QUERY, Queue, Sent, folder, jobs, lead_s, script, time_limit_s};
+use crate::engines::slurm::{
+    EARLY_S, Job, Order, QUERY, Queue, Sent, folder, jobs, lead_s, script, time_limit_s,
+};
 use crate::engines::{open_shards, usual_shards};
 use crate::stages;
 use crate::store::{Check, commit};
@@ -24,11 +26,14 @@ const USUAL_MOST: usize = 1001;
 fn option_fault(option: &str) -> Option<String> {
     if option.chars().any(char::is_control) {
         return Some(format!(
-            "error: --option {option:?} has a control character\nhelp: give one option of sbatch for each --option, on one line"
+            "error: --option {option:?} has a control character\nhelp: give one option of sbatch for each \
+             --option, on one line"
         ));
     }
     if let Some((own, instead)) = reserved(option) {
-        return Some(format!("error: --option={own} would replace what `hysteron submit` sends\nhelp: {instead}"));
+        return Some(format!(
+            "error: --option={own} would replace what `hysteron submit` sends\nhelp: {instead}"
+        ));
     }
     (!option.starts_with('-')).then(|| {
         let option = shell_quote(&format!("--option=--{option}"));
@@ -36,18 +41,28 @@ fn option_fault(option: &str) -> Option<String> {
     })
 }
 
-/// The option of sbatch that an option means, if `submit` sets it, and what to do. sbatch takes the beginning of a long name for the name.
+/// The option of sbatch that an option means, if `submit` sets it, and what to do. sbatch takes the beginning
+/// of a long name for the name.
 fn reserved(option: &str) -> Option<(&'static str, &'static str)> {
     let name = option.split(['=', ' ']).next().unwrap_or_default();
     if "--wrap".starts_with(name) && name.starts_with("--wr") {
         return Some(("--wrap", "leave it out; use `sbatch` itself for other commands"));
     }
-    let is_array = ("--array".starts_with(name) && name.starts_with("--ar")) || (name.starts_with("-a") && !name.starts_with("--"));
+    let is_array = ("--array".starts_with(name) && name.starts_with("--ar"))
+        || (name.starts_with("-a") && !name.starts_with("--"));
     is_array.then_some(("--array", "use --shards N for the number of parts"))
 }
 
-pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, task: (u16, &[String]), dry: bool) -> Result<u8, Fault> {
-    task.1.iter().try_for_each(|option| option_fault(option).map_or(Ok(()), |text| Err(Fault { code: BAD_SPEC, text })))?;
+pub(super) fn slurm(
+    spec: &Path,
+    output: &OutputArguments,
+    shards: Option<u32>,
+    task: (u16, &[String]),
+    dry: bool,
+) -> Result<u8, Fault> {
+    task.1.iter().try_for_each(|option| {
+        option_fault(option).map_or(Ok(()), |text| Err(Fault { code: BAD_SPEC, text }))
+    })?;
     let mut campaign = open(spec, output)?;
     campaign.dir = told(&campaign.dir)?;
     let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
@@ -55,7 +70,8 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
     let queue = queue(&sent).unwrap_or_default();
     if let Some((_, of, _)) = queue.shards.iter().find(|(_, of, _)| *of != shards) {
         return Err(failed(format!(
-            "cannot submit {} in {shards} shards: jobs with {of} shards are in the queue\nhelp: use --shards {of}, or wait until they have ended",
+            "cannot submit {} in {shards} shards: jobs with {of} shards are in the queue\nhelp: use --shards \
+             {of}, or wait until they have ended",
             campaign.spec.name
         )));
     }
@@ -66,14 +82,21 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
         open.retain(|shard| !queue.shards.contains(&(stage.word().to_owned(), shards, *shard)));
         (stage, open)
     };
-    let waiting: Vec<_> =
-        [Stage::Generate, Stage::Extract, Stage::Cycle].map(open).into_iter().filter(|(_, open)| !open.is_empty()).collect();
+    let waiting: Vec<_> = [Stage::Generate, Stage::Extract, Stage::Cycle]
+        .map(open)
+        .into_iter()
+        .filter(|(_, open)| !open.is_empty())
+        .collect();
     if waiting.is_empty() && (queue.aggregates || survey.report == Standing::Done) {
-        let failures = survey.cycles.iter().filter(|(_, standing)| matches!(standing, Standing::Failed(_))).count();
+        let failures =
+            survey.cycles.iter().filter(|(_, standing)| matches!(standing, Standing::Failed(_))).count();
         let text = match (queue.aggregates, failures) {
             (true, _) => "Nothing to submit: all pending tasks are in the queue.\n".to_owned(),
             (false, 0) => "Nothing to submit: everything is done.\n".to_owned(),
-            (false, _) => format!("Nothing to submit: all other tasks are done.\n{}", failed_cycles(failures, &campaign.dir)),
+            (false, _) => format!(
+                "Nothing to submit: all other tasks are done.\n{}",
+                failed_cycles(failures, &campaign.dir)
+            ),
         };
         say(&if output.json { jobs_json(&campaign, &[], &[]) } else { text })?;
         return Ok(if queue.aggregates || failures == 0 { 0 } else { FAILED_CASES });
@@ -82,7 +105,8 @@ pub(super) fn slurm(spec: &Path, output: &OutputArguments, shards: Option<u32>, 
     short_limit(&campaign, task.1);
     let program = own_file()?;
     let queued = queue.jobs.iter().copied().collect();
-    let order = Order { program, shards, waiting, most: most(), cpus: task.0, options: task.1.to_vec(), queued };
+    let order =
+        Order { program, shards, waiting, most: most(), cpus: task.0, options: task.1.to_vec(), queued };
     if dry { show(&campaign, &order, output.json) } else { send(&campaign, &order, sent, output.json) }
 }
 
@@ -93,7 +117,9 @@ fn enough_processors(wanted: u16) -> Result<(), Fault> {
     // `8+`: some nodes of the group have more.
     let known = most.filter(|_| !nodes.contains('+'));
     match known.filter(|most| *most < u64::from(wanted)) {
-        Some(most) => Err(failed(format!("no node has {wanted} processors (--cpus {wanted})\nhelp: use --cpus {most} or less"))),
+        Some(most) => Err(failed(format!(
+            "no node has {wanted} processors (--cpus {wanted})\nhelp: use --cpus {most} or less"
+        ))),
         None => Ok(()),
     }
 }
@@ -107,7 +133,11 @@ fn short_limit(campaign: &Campaign, options: &[String]) {
     if longest.max(60.0) < usable as f64 {
         return;
     }
-    let of_cycles = if longest > 0.0 { format!("; the longest finished cycle took {longest:.0} s") } else { String::new() };
+    let of_cycles = if longest > 0.0 {
+        format!("; the longest finished cycle took {longest:.0} s")
+    } else {
+        String::new()
+    };
     let text = format!(
         "warning: a time limit of {limit} s may leave only {usable} s for computing{of_cycles}\n\
          help: a cycle that does not finish within the limit is not requeued; use a longer --option=--time"
@@ -127,8 +157,10 @@ fn scripts(campaign: &Campaign, order: &Order, jobs: &[Job]) -> Vec<(PathBuf, St
 /// Says what would be done.
 fn show(campaign: &Campaign, order: &Order, json: bool) -> Result<u8, Fault> {
     let (folder, jobs) = (folder(campaign), jobs(order));
-    let names: Vec<String> = jobs.iter().enumerate().map(|(place, job)| format!("<{}-{place}>", job.stage.word())).collect();
-    let commands: Vec<Vec<String>> = jobs.iter().map(|job| job.arguments(&folder, &names, &order.queued)).collect();
+    let names: Vec<String> =
+        jobs.iter().enumerate().map(|(place, job)| format!("<{}-{place}>", job.stage.word())).collect();
+    let commands: Vec<Vec<String>> =
+        jobs.iter().map(|job| job.arguments(&folder, &names, &order.queued)).collect();
     let scripts = scripts(campaign, order, &jobs);
     if json {
         let scripts: serde_json::Map<String, Value> =
@@ -155,10 +187,13 @@ fn send(campaign: &Campaign, order: &Order, mut sent: Vec<Sent>, json: bool) -> 
     let log = folder.join("log");
     make_folder(&log)?;
     for (path, text) in scripts(campaign, order, &jobs) {
-        if path.is_file() && !std::fs::read_to_string(&path).is_ok_and(|present| present.contains(SCRIPT_MARK)) {
+        if path.is_file()
+            && !std::fs::read_to_string(&path).is_ok_and(|present| present.contains(SCRIPT_MARK))
+        {
             let path = path_shown(&path);
             return Err(failed(format!(
-                "cannot write the script {path}: `hysteron submit` did not write the file that exists\nhelp: move it"
+                "cannot write the script {path}: `hysteron submit` did not write the file that exists\nhelp: \
+                 move it"
             )));
         }
         commit::commit_bytes("write the script", &path, text.as_bytes()).map_err(failed)?;
@@ -186,7 +221,10 @@ fn send(campaign: &Campaign, order: &Order, mut sent: Vec<Sent>, json: bool) -> 
     say(&if json {
         jobs_json(campaign, &jobs, &numbers)
     } else {
-        format!("Logs: {log}\n`hysteron status {dir}` shows the state. The same command submits only missing tasks.\n")
+        format!(
+            "Logs: {log}\n`hysteron status {dir}` shows the state. The same command submits only missing \
+             tasks.\n"
+        )
     })?;
     Ok(0)
 }
@@ -198,7 +236,10 @@ fn jobs_json(campaign: &Campaign, jobs: &[Job], numbers: &[String]) -> String {
         .zip(numbers)
         .map(|(job, number)| json!({ "stage": job.stage.word(), "job": number, "task_count": job.tasks.len().max(1) }))
         .collect();
-    format!("{:#}\n", json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "jobs": jobs }))
+    format!(
+        "{:#}\n",
+        json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "jobs": jobs })
+    )
 }
 
 /// Arguments as a shell takes them.
@@ -213,19 +254,34 @@ fn sbatch(arguments: &[String], before: &[String], options: &[String]) -> Result
         jobs => format!("submitted before: {}; `scancel {}` cancels them", jobs.join(", "), jobs.join(" ")),
     };
     let output = Command::new("sbatch").args(arguments).output().map_err(|error| {
-        failed(format!("cannot start sbatch: {error}; {kept}\nhelp: use a machine with the commands of Slurm, or --dry-run"))
+        failed(format!(
+            "cannot start sbatch: {error}; {kept}\nhelp: use a machine with the commands of \
+             Slurm, or --dry-run"
+        ))
     })?;
     let said = String::from_utf8_lossy(&output.stdout);
     // `--parsable` says the number, and where there are several clusters a semicolon and which.
     let number = said.trim().split(';').next().and_then(|number| number.parse().ok());
     number.filter(|_| output.status.success()).ok_or_else(|| {
         let reasons = String::from_utf8_lossy(&output.stderr);
-        let reason = |line: &str| line.trim().trim_start_matches("sbatch: ").trim_start_matches("error: ").to_owned();
-        let reason = reasons.lines().map(reason).find(|line| !line.is_empty()).unwrap_or_else(|| "it returned no job number".to_owned());
+        let reason =
+            |line: &str| line.trim().trim_start_matches("sbatch: ").trim_start_matches("error: ").to_owned();
+        let reason = reasons
+            .lines()
+            .map(reason)
+            .find(|line| !line.is_empty())
+            .unwrap_or_else(|| "it returned no job number".to_owned());
         let help = match options {
             [] => format!("`sbatch {}` shows the error again", shown(arguments)),
             options => {
-                format!("check {}", options.iter().map(|option| shell_quote(&format!("--option={option}"))).collect::<Vec<_>>().join(" "))
+                format!(
+                    "check {}",
+                    options
+                        .iter()
+                        .map(|option| shell_quote(&format!("--option={option}")))
+                        .collect::<Vec<_>>()
+                        .join(" ")
+                )
             }
         };
         failed(format!("sbatch refused the job: {reason}; {kept}\nhelp: {help}"))
@@ -237,7 +293,13 @@ const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Output of a command, if it succeeds in time. One that does not answer is killed.
 fn answer(command: &str, arguments: &[&str]) -> Option<String> {
-    let mut child = Command::new(command).args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
+    let mut child = Command::new(command)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .ok()?;
     let mut output = child.stdout.take()?;
     let (tell, told) = std::sync::mpsc::channel();
     // A thread of its own: what the command has started may hold its output open, and is not waited for.
@@ -258,7 +320,9 @@ fn answer(command: &str, arguments: &[&str]) -> Option<String> {
 fn most() -> usize {
     let text = answer("scontrol", &["show", "config"]).unwrap_or_default();
     let line = text.lines().find(|line| line.trim_start().starts_with("MaxArraySize"));
-    line.and_then(|line| line.split('=').nth(1)?.trim().parse().ok()).filter(|most| *most > 0).unwrap_or(USUAL_MOST)
+    line.and_then(|line| line.split('=').nth(1)?.trim().parse().ok())
+        .filter(|most| *most > 0)
+        .unwrap_or(USUAL_MOST)
 }
 
 /// The jobs that were sent for a campaign.
@@ -266,7 +330,10 @@ pub(super) fn sent(campaign: &Campaign) -> Result<Vec<Sent>, Fault> {
     let path = folder(campaign).join("jobs.json");
     let refused = |why: String| {
         let path = path_shown(&path);
-        failed(format!("cannot read the submitted jobs from {path}: {why}\nhelp: delete the file when none of its jobs is in the queue"))
+        failed(format!(
+            "cannot read the submitted jobs from {path}: {why}\nhelp: delete the file when none of its jobs \
+             is in the queue"
+        ))
     };
     match std::fs::read(&path) {
         Ok(bytes) => serde_json::from_slice(&bytes).map_err(|error| refused(error.to_string())),
@@ -277,7 +344,9 @@ pub(super) fn sent(campaign: &Campaign) -> Result<Vec<Sent>, Fault> {
 
 fn remember(campaign: &Campaign, sent: &[Sent]) -> Result<(), Fault> {
     let text = format!("{:#}\n", json!(sent));
-    commit::commit_bytes("write down the jobs in", &folder(campaign).join("jobs.json"), text.as_bytes()).map(drop).map_err(failed)
+    commit::commit_bytes("write down the jobs in", &folder(campaign).join("jobs.json"), text.as_bytes())
+        .map(drop)
+        .map_err(failed)
 }
 
 /// State of some jobs in the queue; nothing if there is no queue or it does not answer.
@@ -290,15 +359,19 @@ pub(super) fn queue(sent: &[Sent]) -> Option<Queue> {
 
 /// True if jobs other than the one of this program are in the queue.
 pub(super) fn is_queued(sent: &[Sent]) -> bool {
-    let own = std::env::var("SLURM_ARRAY_JOB_ID").or_else(|_| std::env::var("SLURM_JOB_ID")).ok().and_then(|job| job.parse::<u64>().ok());
+    let own = std::env::var("SLURM_ARRAY_JOB_ID")
+        .or_else(|_| std::env::var("SLURM_JOB_ID"))
+        .ok()
+        .and_then(|job| job.parse::<u64>().ok());
     queue(sent).is_some_and(|queue| queue.jobs.iter().any(|job| Some(*job) != own))
 }
 
 /// The command that submits pending tasks of a campaign again, with the options of the last submission.
 pub(super) fn again(campaign: &Campaign, sent: &[Sent]) -> String {
     let last = sent.iter().rev().find(|sent| !sent.options.is_empty());
-    let options: String =
-        last.map(|sent| sent.options.iter().map(|option| format!(" {}", shell_quote(option))).collect()).unwrap_or_default();
+    let options: String = last
+        .map(|sent| sent.options.iter().map(|option| format!(" {}", shell_quote(option))).collect())
+        .unwrap_or_default();
     format!("hysteron submit {} --engine slurm{options}", shell_path(&campaign.dir))
 }
 
@@ -309,7 +382,12 @@ pub(super) fn ended(campaign: &Campaign, sent: &[Sent], queue: &Queue, survey: &
     let mut enter = |of: &Sent, task: Option<usize>| {
         let name = task.map_or_else(|| of.job.to_string(), |task| format!("{}_{task}", of.job));
         let state = queue.ended.get(&(of.job, task)).cloned();
-        found.push(Ended { name, stage: of.stage.clone(), state, log: folder(campaign).join("log").join(of.log(task)) });
+        found.push(Ended {
+            name,
+            stage: of.stage.clone(),
+            state,
+            log: folder(campaign).join("log").join(of.log(task)),
+        });
     };
     // The last job of a shard counts.
     for of in sent.iter().rev() {

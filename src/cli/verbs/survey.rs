@@ -40,7 +40,9 @@ pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
         let reasons = |stage: Stage, units: &[(String, Standing)]| causes(&campaign, stage, units);
         describe(&campaign, &units, reasons)
             + &verdicts::plan_text(&foreseen)
-            + &remaining(&units, &campaign, |open| format!("`run` would compute {}.\n", counted(open, "task")))
+            + &remaining(&units, &campaign, |open| {
+                format!("`run` would compute {}.\n", counted(open, "task"))
+            })
     };
     say(&text)?;
     Ok(0)
@@ -69,11 +71,17 @@ pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> 
         };
         if !asked.json {
             if let Some(why) = campaign.spec_fault() {
-                text += &format!("warning: {why}: the spec of this folder may differ from the one that was run\n");
+                text += &format!(
+                    "warning: {why}: the spec of this folder may differ from the one that was run\n"
+                );
             }
             text += &slurm.lines();
             text += &living.lines();
-            let pending = |open| living.pending(&units, &resuming(&campaign.dir)).unwrap_or_else(|| slurm.pending(open, &campaign));
+            let pending = |open| {
+                living
+                    .pending(&units, &resuming(&campaign.dir))
+                    .unwrap_or_else(|| slurm.pending(open, &campaign))
+            };
             text += &remaining(&units, &campaign, pending);
         }
         if watch && !asked.json && std::io::stdout().is_terminal() {
@@ -90,7 +98,9 @@ pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> 
         if idle > MOST_IDLE {
             let what = if ended { "process computes them" } else { "job of the run is in the Slurm queue" };
             let action = if ended { "resume the run" } else { "submit them" };
-            return Err(failed(format!("tasks are pending, but no {what}\nhelp: {action} with the command above")));
+            return Err(failed(format!(
+                "tasks are pending, but no {what}\nhelp: {action} with the command above"
+            )));
         }
         std::thread::sleep(EVERY);
     }
@@ -114,7 +124,8 @@ impl Slurm {
             Err(fault) => return Self::Unreadable(fault.text),
         };
         let queue = submit::queue(&jobs);
-        let ended = queue.as_ref().map(|queue| submit::ended(campaign, &jobs, queue, survey)).unwrap_or_default();
+        let ended =
+            queue.as_ref().map(|queue| submit::ended(campaign, &jobs, queue, survey)).unwrap_or_default();
         Self::Sent { jobs, queue, ended }
     }
 
@@ -123,7 +134,8 @@ impl Slurm {
         matches!(self, Self::Sent { queue: Some(queue), .. } if queue.jobs.is_empty())
     }
 
-    /// Jobs and tasks by state, and tasks that have ended with work undone. Finished tasks are known by their files.
+    /// Jobs and tasks by state, and tasks that have ended with work undone. Finished tasks are known by their
+    /// files.
     fn lines(&self) -> String {
         let (jobs, queue, ended) = match self {
             Self::None => return String::new(),
@@ -131,13 +143,20 @@ impl Slurm {
             Self::Sent { jobs, queue, ended } => (jobs, queue, ended),
         };
         let Some(queue) = queue else {
-            return format!("slurm     {} submitted; the queue cannot be asked here\n", counted(jobs.len(), "job"));
+            return format!(
+                "slurm     {} submitted; the queue cannot be asked here\n",
+                counted(jobs.len(), "job")
+            );
         };
-        let mut states: Vec<String> = queue.states.iter().map(|(state, count)| format!("{count} {state}")).collect();
+        let mut states: Vec<String> =
+            queue.states.iter().map(|(state, count)| format!("{count} {state}")).collect();
         if queue.restarts > 0 {
             states.push(counted(queue.restarts, "restart"));
         }
-        let mut text = format!("slurm     {}\n", if states.is_empty() { "nothing in the queue".to_owned() } else { states.join(", ") });
+        let mut text = format!(
+            "slurm     {}\n",
+            if states.is_empty() { "nothing in the queue".to_owned() } else { states.join(", ") }
+        );
         for task in ended.iter().take(LISTED) {
             let state = task.state.as_deref().unwrap_or("has ended");
             text += &format!("  {} job {} {state}, log {}\n", task.stage, task.name, shown(&task.log));
@@ -155,8 +174,12 @@ impl Slurm {
             Self::Sent { queue: Some(queue), .. } if !queue.jobs.is_empty() => {
                 format!("{open} pending; jobs of the run are in the Slurm queue.\n")
             }
-            Self::Sent { jobs, .. } => format!("{open} pending; submit with\n  {}\n", submit::again(campaign, jobs)),
-            Self::None | Self::Unreadable(_) => format!("{open} pending; resume with `{}`.\n", resuming(&campaign.dir)),
+            Self::Sent { jobs, .. } => {
+                format!("{open} pending; submit with\n  {}\n", submit::again(campaign, jobs))
+            }
+            Self::None | Self::Unreadable(_) => {
+                format!("{open} pending; resume with `{}`.\n", resuming(&campaign.dir))
+            }
         }
     }
 
@@ -179,7 +202,8 @@ impl Slurm {
 /// Pending tasks in a sentence, and failed ones.
 fn remaining(units: &Units, campaign: &Campaign, does: impl Fn(usize) -> String) -> String {
     // Where a surface failed, its cycles did too.
-    let of_stage = |units: &[(String, Standing)]| units.iter().filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
+    let of_stage =
+        |units: &[(String, Standing)]| units.iter().filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
     let failed = units.iter().map(|(_, units)| of_stage(units)).max().unwrap_or(0);
     match (left(units), failed) {
         (0, 0) => "Nothing is left to do.\n".to_owned(),
@@ -199,7 +223,14 @@ fn units(campaign: &Campaign, survey: Survey) -> Units {
     vec![
         (Stage::Generate, ids().zip(survey.surfaces).collect()),
         (Stage::Extract, ids().zip(survey.asperities).collect()),
-        (Stage::Cycle, survey.cycles.into_iter().map(|(place, standing)| (campaign.cycles[place].id.clone(), standing)).collect()),
+        (
+            Stage::Cycle,
+            survey
+                .cycles
+                .into_iter()
+                .map(|(place, standing)| (campaign.cycles[place].id.clone(), standing))
+                .collect(),
+        ),
         (Stage::Aggregate, vec![(STATISTICS.to_owned(), survey.statistics)]),
         (Stage::Report, vec![(REPORT_PAGE.to_owned(), survey.report)]),
     ]
@@ -223,8 +254,11 @@ fn reason(standing: &Standing) -> &str {
 }
 
 fn answer(campaign: &Campaign, units: &Units) -> Value {
-    let surfaces: HashMap<&str, &str> =
-        campaign.cycles.iter().map(|cycle| (cycle.id.as_str(), campaign.surfaces[cycle.surface].id.as_str())).collect();
+    let surfaces: HashMap<&str, &str> = campaign
+        .cycles
+        .iter()
+        .map(|cycle| (cycle.id.as_str(), campaign.surfaces[cycle.surface].id.as_str()))
+        .collect();
     let unit = |stage: Stage, (id, standing): &(String, Standing)| {
         let stale = if *standing == Standing::Stale { stale(campaign, stage) } else { None };
         let mut unit = json!({ "id": id, "state": standing.word(), "why": stale.as_deref().unwrap_or_else(|| reason(standing)) });
@@ -240,10 +274,19 @@ fn answer(campaign: &Campaign, units: &Units) -> Value {
     json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "stages": stages })
 }
 
-/// The number of tasks in each state by stage, with failed and damaged ones, and further lines on the tasks of a stage.
-fn describe(campaign: &Campaign, units: &Units, further: impl Fn(Stage, &[(String, Standing)]) -> String) -> String {
+/// The number of tasks in each state by stage, with failed and damaged ones, and further lines on the tasks
+/// of a stage.
+fn describe(
+    campaign: &Campaign,
+    units: &Units,
+    further: impl Fn(Stage, &[(String, Standing)]) -> String,
+) -> String {
     let (name, dir) = (&campaign.spec.name, shown(&campaign.dir));
-    let mut text = format!("{name} in {dir}: {}, {}\n", counted(campaign.cases.len(), "case"), campaign.realizations_in_words());
+    let mut text = format!(
+        "{name} in {dir}: {}, {}\n",
+        counted(campaign.cases.len(), "case"),
+        campaign.realizations_in_words()
+    );
     for (stage, units) in units {
         let counted: Vec<String> = Standing::WORDS
             .iter()
@@ -255,7 +298,11 @@ fn describe(campaign: &Campaign, units: &Units, further: impl Fn(Stage, &[(Strin
         for (id, standing) in units.iter().filter(|(_, s)| s.why().is_some() || *s == Standing::Stale) {
             let why = standing.why().map(str::to_owned).or_else(|| stale(campaign, *stage));
             let why = why.map_or_else(String::new, |why| format!(": {}", visible(&why.replace('\n', "; "))));
-            let verb = if matches!(standing, Standing::Failed(_)) { "failed" } else { &format!("is {}", standing.word()) };
+            let verb = if matches!(standing, Standing::Failed(_)) {
+                "failed"
+            } else {
+                &format!("is {}", standing.word())
+            };
             text += &format!("  {id} {verb}{why}\n");
         }
         if *stage == Stage::Cycle {
@@ -268,6 +315,8 @@ fn describe(campaign: &Campaign, units: &Units, further: impl Fn(Stage, &[(Strin
 
 /// Loads of finished cycles that have no result, one line for each cycle.
 fn not_reached(campaign: &Campaign) -> String {
-    let of = |unit: &CycleUnit| campaign.not_reached_in_tables(unit).map(|why| format!("  {}: {}\n", unit.id, visible(&why)));
+    let of = |unit: &CycleUnit| {
+        campaign.not_reached_in_tables(unit).map(|why| format!("  {}: {}\n", unit.id, visible(&why)))
+    };
     campaign.distinct_cycles().iter().filter_map(of).collect()
 }

@@ -15,13 +15,17 @@ const BEFORE_A_RUN: [&str; 2] = ["slow_grid", "long_loop"];
 
 /// Verdicts, warnings and expected errors of a plan, as lines of at most 80 columns.
 pub(super) fn plan_text(of: &Foreseen) -> String {
-    let warnings: String = of.warnings.iter().map(|warning| warning_text(warning, of.verdicts.len())).collect();
+    let warnings: String =
+        of.warnings.iter().map(|warning| warning_text(warning, of.verdicts.len())).collect();
     regimes(&of.verdicts) + &costs(&of.verdicts) + &warnings + &errors(&of.verdicts)
 }
 
 /// Verdicts and the most important warnings before the first task of a run.
 pub(super) fn run_text(of: &Foreseen) -> String {
-    let warnings = BEFORE_A_RUN.iter().filter_map(|code| of.warning(code)).map(|warning| warning_text(warning, of.verdicts.len()));
+    let warnings = BEFORE_A_RUN
+        .iter()
+        .filter_map(|code| of.warning(code))
+        .map(|warning| warning_text(warning, of.verdicts.len()));
     let text = regimes(&of.verdicts) + &costs(&of.verdicts) + &warnings.collect::<String>();
     text.trim_end().to_owned()
 }
@@ -36,7 +40,8 @@ fn warning_text(of: &Outside, all: usize) -> String {
 
 /// Smallest and largest of some values as text, with `digits` significant digits.
 fn range(values: impl Iterator<Item = f64> + Clone, digits: usize) -> Option<String> {
-    let [low, high] = [f64::min, f64::max].map(|choose| values.clone().reduce(choose).map(|value| significant(value, digits)));
+    let [low, high] = [f64::min, f64::max]
+        .map(|choose| values.clone().reduce(choose).map(|value| significant(value, digits)));
     let (low, high) = (low?, high?);
     Some(if low == high { low } else { format!("{low} to {high}") })
 }
@@ -56,7 +61,10 @@ fn regimes(verdicts: &[Verdict]) -> String {
     for of in verdicts.iter().filter(|of| of.regime.is_some() || of.error.is_none()) {
         groups.entry((of.regime, of.method)).or_default().push(of);
     }
-    groups.values().map(|group| wrapped(&format!("{:10}{}", "regime", regime(group, verdicts.len())), INDENT)).collect()
+    groups
+        .values()
+        .map(|group| wrapped(&format!("{:10}{}", "regime", regime(group, verdicts.len())), INDENT))
+        .collect()
 }
 
 /// The regime of cases that share regime and method.
@@ -64,42 +72,57 @@ fn regime(group: &[&Verdict], all: usize) -> String {
     let cases = if group.len() == all { String::new() } else { format!(" ({} of {all} cases)", group.len()) };
     let [first, ..] = group else { return String::new() };
     let Some(regime) = first.regime else {
-        return format!("known after the stage extract{cases}: the scan is too large to be read for the plan");
+        return format!(
+            "known after the stage extract{cases}: the scan is too large to be read for the plan"
+        );
     };
     let ratio = range(group.iter().filter_map(|of| of.persson_tosatti), 2);
     let octave = range(group.iter().filter_map(|of| of.conformity.filter(|ratio| *ratio > 0.0)), 2);
     let ratios = ratio.map_or_else(|| "no adhesion".to_owned(), |ratio| format!("U_el/Δγ = {ratio}"));
     let octave = octave.map_or_else(String::new, |octave| format!(", U_1/Δγ = {octave}"));
     let expectation = regime.expectation(first.method);
-    format!("{}, {}{cases}: {ratios}{octave}. {expectation}.{}", regime.name(), name(first.method), effective(group))
+    format!(
+        "{}, {}{cases}: {ratios}{octave}. {expectation}.{}",
+        regime.name(),
+        name(first.method),
+        effective(group)
+    )
 }
 
 /// The effective work of adhesion of flattened surfaces, as a sentence.
 fn effective(group: &[&Verdict]) -> String {
     let flat = || group.iter().filter(|of| of.regime == Some(Regime::Flattened));
     let energy = range(flat().filter_map(|of| of.effective_adhesion_j_m2), 3);
-    let share = range(flat().filter_map(|of| Some(100.0 * of.effective_adhesion_j_m2? / of.work_of_adhesion_j_m2)), 3);
-    energy
-        .zip(share)
-        .map_or_else(String::new, |(energy, share)| format!(" Effective work of adhesion {energy} J/m² ({share}\u{a0}% of Δγ)."))
+    let share = range(
+        flat().filter_map(|of| Some(100.0 * of.effective_adhesion_j_m2? / of.work_of_adhesion_j_m2)),
+        3,
+    );
+    energy.zip(share).map_or_else(String::new, |(energy, share)| {
+        format!(" Effective work of adhesion {energy} J/m² ({share}\u{a0}% of Δγ).")
+    })
 }
 
 /// Grids, memory and time of the cycles, one paragraph for each method.
 fn costs(verdicts: &[Verdict]) -> String {
     let of = |method: Method| {
-        let costs: Vec<Cost> = verdicts.iter().filter(|of| of.method == method).filter_map(|of| of.cost).collect();
+        let costs: Vec<Cost> =
+            verdicts.iter().filter(|of| of.method == method).filter_map(|of| of.cost).collect();
         let points = range(costs.iter().map(|cost| cost.points as f64), 5)?;
         let per_wavelength = range(costs.iter().map(|cost| cost.per_wavelength), 2)?;
         let largest = |of: fn(&Cost) -> f64| costs.iter().map(of).fold(0.0, f64::max);
         let grid = match method {
-            Method::BoundaryElements if costs.iter().any(|cost| cost.is_mirrored) => "grid with mirror images",
+            Method::BoundaryElements if costs.iter().any(|cost| cost.is_mirrored) => {
+                "grid with mirror images"
+            }
             Method::BoundaryElements => "grid",
             _ => "grid of the surface",
         };
         // The time has an accuracy of a factor of 3.
-        let (memory, time) = (significant(largest(|cost| cost.memory_bytes) / 1e9, 1), in_words(largest(|cost| cost.seconds)));
+        let (memory, time) =
+            (significant(largest(|cost| cost.memory_bytes) / 1e9, 1), in_words(largest(|cost| cost.seconds)));
         let text = format!(
-            "{}: {grid} {points} points a side, {per_wavelength} per shortest wavelength; some {memory} GB, up to about {time} a cycle",
+            "{}: {grid} {points} points a side, {per_wavelength} per shortest wavelength; some {memory} GB, \
+             up to about {time} a cycle",
             name(method)
         );
         Some(wrapped(&format!("{:10}{text}", "cost"), INDENT))
@@ -118,8 +141,16 @@ fn errors(verdicts: &[Verdict]) -> String {
     }
     let text = |(error, count): &(&str, usize)| {
         let (problem, help) = error.split_once("\nhelp: ").unwrap_or((error, ""));
-        let problem = format!("warning: the run would fail for {count} of {}: {}", counted(verdicts.len(), "case"), visible(problem));
-        let help = if help.is_empty() { String::new() } else { wrapped(&format!("  help: {}", visible(help)), "  ") };
+        let problem = format!(
+            "warning: the run would fail for {count} of {}: {}",
+            counted(verdicts.len(), "case"),
+            visible(problem)
+        );
+        let help = if help.is_empty() {
+            String::new()
+        } else {
+            wrapped(&format!("  help: {}", visible(help)), "  ")
+        };
         wrapped(&problem, "  ") + &help
     };
     known.iter().map(text).collect()

@@ -23,7 +23,9 @@ const EVERY: Duration = Duration::from_millis(20);
 /// Refuses --open where no report is written.
 pub(super) fn possible(open: bool, is_written: bool) -> Result<(), Fault> {
     if open && !is_written {
-        let text = "error: --open needs the report, which --until leaves out\nhelp: leave out --open, or --until".to_owned();
+        let text =
+            "error: --open needs the report, which --until leaves out\nhelp: leave out --open, or --until"
+                .to_owned();
         return Err(Fault { code: BAD_SPEC, text });
     }
     Ok(())
@@ -32,7 +34,8 @@ pub(super) fn possible(open: bool, is_written: bool) -> Result<(), Fault> {
 /// Opens a file; prints a warning if that fails.
 pub(super) fn open(path: &Path) {
     if let Err(why) = tried(path) {
-        let _ = writeln!(std::io::stderr().lock(), "warning: cannot open {} with {VIEWER}: {why}", shown(path));
+        let _ =
+            writeln!(std::io::stderr().lock(), "warning: cannot open {} with {VIEWER}: {why}", shown(path));
     }
 }
 

@@ -53,7 +53,12 @@ pub(super) fn stages(spec: &Path, arguments: &HowArguments, request: Request) ->
     }
     let check = if arguments.quick { Check::Sizes } else { Check::Contents };
     let report = campaign.dir.join("report.html");
-    let code = perform(campaign, &Task { shard, partial, check, ..Task::new(from, until) }, arguments.output.json, arguments.talk)?;
+    let code = perform(
+        campaign,
+        &Task { shard, partial, check, ..Task::new(from, until) },
+        arguments.output.json,
+        arguments.talk,
+    )?;
     if view {
         viewer::open(&report);
     }
@@ -61,10 +66,18 @@ pub(super) fn stages(spec: &Path, arguments: &HowArguments, request: Request) ->
 }
 
 /// `compare` and `report --compare`.
-pub(super) fn compare(runs: &[PathBuf], out: Option<&Path>, force: bool, json: bool, view: bool) -> Result<u8, Fault> {
+pub(super) fn compare(
+    runs: &[PathBuf],
+    out: Option<&Path>,
+    force: bool,
+    json: bool,
+    view: bool,
+) -> Result<u8, Fault> {
     if runs.len() < 2 {
         let text =
-            "error: a comparison needs two runs\nhelp: `hysteron compare DIR DIR` compares the second run with the first one".to_owned();
+            "error: a comparison needs two runs\nhelp: `hysteron compare DIR DIR` compares the second run \
+             with the first one"
+                .to_owned();
         return Err(Fault { code: BAD_SPEC, text });
     }
     let folders = runs.iter().map(|run| folder_of(run)).collect::<Result<Vec<PathBuf>, Fault>>()?;
@@ -73,9 +86,17 @@ pub(super) fn compare(runs: &[PathBuf], out: Option<&Path>, force: bool, json: b
     let compared = stages::compare(&folders, out, force).map_err(failed)?;
     let table = out.join(schema::COMPARISON.file);
     say(&if json {
-        format!("{:#}\n", json!({ "report": compared.page.display().to_string(), "table": table.display().to_string() }))
+        format!(
+            "{:#}\n",
+            json!({ "report": compared.page.display().to_string(), "table": table.display().to_string() })
+        )
     } else {
-        format!("{}Report: {}\nTable: {}\n", differences(&compared).map_err(failed)?, shown(&compared.page), shown(&table))
+        format!(
+            "{}Report: {}\nTable: {}\n",
+            differences(&compared).map_err(failed)?,
+            shown(&compared.page),
+            shown(&table)
+        )
     })?;
     if view {
         viewer::open(&compared.page);
@@ -90,12 +111,16 @@ const PRINTED: usize = 40;
 fn differences(compared: &Comparison) -> Result<String, FrameError> {
     let table = &compared.table;
     let (groups, runs, quantities) = (table.i64("group")?, table.text("campaign")?, table.text("quantity")?);
-    let (means, references, differences) = (table.f64("mean")?, table.f64("reference_mean")?, table.f64("difference")?);
+    let (means, references, differences) =
+        (table.f64("mean")?, table.f64("reference_mean")?, table.f64("difference")?);
     let intervals = table.f64_or_null("difference_ci95")?;
     let mut text = String::new();
     for row in 0..table.row_count().min(PRINTED) {
         if row == 0 || groups[row] != groups[row - 1] || runs[row] != runs[row - 1] {
-            let name = usize::try_from(groups[row]).ok().and_then(|group| compared.names.get(group)).map_or("", String::as_str);
+            let name = usize::try_from(groups[row])
+                .ok()
+                .and_then(|group| compared.names.get(group))
+                .map_or("", String::as_str);
             let heading = format!("{name}: {} against {}", runs[row], table.text("reference")?[row]);
             text += &wrapped(&visible(&heading), "  ");
         }
@@ -112,7 +137,8 @@ fn differences(compared: &Comparison) -> Result<String, FrameError> {
     if table.row_count() > PRINTED {
         text += &format!("… and {} more rows in the table\n", table.row_count() - PRINTED);
     }
-    let legend = "Columns: quantity, mean of the run, mean of the reference, difference ± half-width of its 95 % confidence interval.";
+    let legend = "Columns: quantity, mean of the run, mean of the reference, difference ± half-width of its \
+         95 % confidence interval.";
     Ok(text + &wrapped(legend, ""))
 }
 
@@ -121,16 +147,26 @@ pub(super) fn retry(asked: &FolderArguments, ids: &[String], talk: TalkArguments
     let campaign = open_dir("retry the failed cycles of", &dir)?;
     if let Some(why) = campaign.spec_fault() {
         let dir = shown(&dir);
-        return Err(failed(format!("cannot retry the failed cycles of {dir}: {why}\nhelp: run `hysteron run SPEC` first")));
+        return Err(failed(format!(
+            "cannot retry the failed cycles of {dir}: {why}\nhelp: run `hysteron run SPEC` first"
+        )));
     }
     let standings = campaign.cycle_standings(Check::Sizes);
     let units = campaign.cycles.iter().zip(standings);
-    let failures: HashSet<String> = units.filter(|(_, s)| matches!(s, Standing::Failed(_))).map(|(unit, _)| unit.id.clone()).collect();
+    let failures: HashSet<String> =
+        units.filter(|(_, s)| matches!(s, Standing::Failed(_))).map(|(unit, _)| unit.id.clone()).collect();
     if let Some(strange) = ids.iter().find(|id| !failures.contains(*id)) {
         let mut known: Vec<&str> = failures.iter().map(String::as_str).collect();
         known.sort_unstable();
-        let known = if known.is_empty() { "no cycle has failed".to_owned() } else { format!("failed are: {}", known.join(", ")) };
-        return Err(failed(format!("cannot retry {strange}: it has not failed in {}\nhelp: {known}", shown(&dir))));
+        let known = if known.is_empty() {
+            "no cycle has failed".to_owned()
+        } else {
+            format!("failed are: {}", known.join(", "))
+        };
+        return Err(failed(format!(
+            "cannot retry {strange}: it has not failed in {}\nhelp: {known}",
+            shown(&dir)
+        )));
     }
     if failures.is_empty() {
         say("Nothing to retry: no cycle has failed.\n")?;
@@ -152,19 +188,24 @@ fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> 
     }
     let jobs = submit::sent(&campaign).unwrap_or_default();
     let again = submit::again(&campaign, &jobs);
-    let (campaign, tallies) = rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(|error| match &error {
-        StageError::Incomplete { .. } if !jobs.is_empty() => {
-            let text = error.to_string();
-            let problem = text.split_once("\nhelp:").map_or(text.as_str(), |(problem, _)| problem);
-            let help = if submit::is_queued(&jobs) {
-                format!("jobs of the run are in the Slurm queue; wait until they have ended (`hysteron status {}`)", shell_path(&dir))
-            } else {
-                format!("submit them with `{again}`")
-            };
-            failed(format!("{problem}\nhelp: {help}"))
-        }
-        _ => failed(error),
-    })?;
+    let (campaign, tallies) =
+        rayon::scope(|_| stages::run(campaign, task, &*teller)).map_err(|error| match &error {
+            StageError::Incomplete { .. } if !jobs.is_empty() => {
+                let text = error.to_string();
+                let problem = text.split_once("\nhelp:").map_or(text.as_str(), |(problem, _)| problem);
+                let help = if submit::is_queued(&jobs) {
+                    format!(
+                        "jobs of the run are in the Slurm queue; wait until they have ended (`hysteron \
+                     status {}`)",
+                        shell_path(&dir)
+                    )
+                } else {
+                    format!("submit them with `{again}`")
+                };
+                failed(format!("{problem}\nhelp: {help}"))
+            }
+            _ => failed(error),
+        })?;
     let ended = Ended::of(&campaign, task.shard, &tallies, teller.elapsed());
     if json {
         say(&tally_json(&ended))?;

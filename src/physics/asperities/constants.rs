@@ -27,7 +27,8 @@ pub(crate) const PATH: &[Constant] = &[
         "longest path increment",
         &[STEPS.longest_increment(), STEPS.longest_increment_of_whole()],
         "`d`",
-        "Rounded down to the grid of exact solves, or to a power of two of it. The second value holds where local problems have all contacts.",
+        "Rounded down to the grid of exact solves, or to a power of two of it. The second value holds where \
+         local problems have all contacts.",
         "numerics",
     ),
     Constant::new(
@@ -58,7 +59,13 @@ pub(crate) const PATH: &[Constant] = &[
         "Members of a local problem with a larger one take it up before the event.",
         "numerics",
     ),
-    Constant::new("residual of intermediate global solves", &[STEPS.sufficient()], "`d`", "For states that are not written.", "numerics"),
+    Constant::new(
+        "residual of intermediate global solves",
+        &[STEPS.sufficient()],
+        "`d`",
+        "For states that are not written.",
+        "numerics",
+    ),
     Constant::new(
         "grid of exact global solves",
         &[STEPS.exact_grid],
@@ -91,14 +98,16 @@ pub(crate) const PATH: &[Constant] = &[
         "halvings of an increment",
         &[STEPS.strict_halvings as f64, STEPS.max_halvings as f64],
         "",
-        "From the first number on, the predictor residual is accepted and contacts without equilibrium relax. After the second, all contacts relax.",
+        "From the first number on, the predictor residual is accepted and contacts without equilibrium \
+         relax. After the second, all contacts relax.",
         "numerics",
     ),
     Constant::new(
         "trials of events in one increment",
         &[EVENTS.trials_per_asperity as f64, EVENTS.trials_offset as f64],
         "",
-        "With `N` asperities, at most the first number times `N` plus the second. Beyond it the cycle fails (`no stable state`).",
+        "With `N` asperities, at most the first number times `N` plus the second. Beyond it the cycle fails \
+         (`no stable state`).",
         "numerics",
     ),
     Constant::new(
@@ -126,7 +135,8 @@ pub(crate) const PATH: &[Constant] = &[
         "shell around a local problem",
         &[EVENTS.shell_ratio as f64],
         "",
-        "Contacts of local problem and shell, over those of the local problem. Beyond the shell an event acts as a point force.",
+        "Contacts of local problem and shell, over those of the local problem. Beyond the shell an event \
+         acts as a point force.",
         "numerics",
     ),
     Constant::new(
@@ -140,7 +150,8 @@ pub(crate) const PATH: &[Constant] = &[
         "local solves in an avalanche",
         &[EVENTS.avalanche_solves as f64],
         "",
-        "At most this number, or the number of contacts divided by it if that is larger. Then the global problem is solved.",
+        "At most this number, or the number of contacts divided by it if that is larger. Then the global \
+         problem is solved.",
         "numerics",
     ),
     Constant::new(
@@ -154,21 +165,29 @@ pub(crate) const PATH: &[Constant] = &[
         "changes of state of one asperity",
         &[EVENTS.changes_per_asperity as f64],
         "",
-        "Other than jump-off, within a longest increment. Then the asperity is frozen until the next one (`held_count`).",
+        "Other than jump-off, within a longest increment. Then the asperity is frozen until the next one \
+         (`held_count`).",
         "numerics",
     ),
     Constant::new(
         "radius of a postponed release",
         &[EVENTS.retried_release],
         "of the radius",
-        "A release that would be undone at the same penetration is tried again when the larger contact has shrunk to this.",
+        "A release that would be undone at the same penetration is tried again when the larger contact has \
+         shrunk to this.",
         "numerics",
     ),
 ];
 
 /// Constants of the solvers.
 pub(crate) const SOLVERS: &[Constant] = &[
-    Constant::new("residual of a local problem", &[SOLVER.local_residual], "`h_rms`", "With contacts outside of it.", "numerics"),
+    Constant::new(
+        "residual of a local problem",
+        &[SOLVER.local_residual],
+        "`h_rms`",
+        "With contacts outside of it.",
+        "numerics",
+    ),
     Constant::new(
         "change of a radius in one iteration",
         &[SOLVER.radius_change],
@@ -190,7 +209,13 @@ pub(crate) const SOLVERS: &[Constant] = &[
         "Largest tolerance of GMRES.",
         "numerics",
     ),
-    Constant::new("products of one linear system", &[SOLVER.products as f64], "", "Maximum number.", "numerics"),
+    Constant::new(
+        "products of one linear system",
+        &[SOLVER.products as f64],
+        "",
+        "Maximum number.",
+        "numerics",
+    ),
     Constant::new(
         "rates of the radii",
         &[SOLVER.rates_residual, SOLVER.rates_residual_intermediate],
@@ -198,12 +223,23 @@ pub(crate) const SOLVERS: &[Constant] = &[
         "At output steps, and elsewhere.",
         "numerics",
     ),
-    Constant::new("evaluation of all free asperities", &[SOLVER.free_interval], "`h_rms`", "Interval of the mean penetration.", "numerics"),
+    Constant::new(
+        "evaluation of all free asperities",
+        &[SOLVER.free_interval],
+        "`h_rms`",
+        "Interval of the mean penetration.",
+        "numerics",
+    ),
     Constant::new(
         "groups of the preconditioner",
-        &[SOLVER.groups.contacts as f64, SOLVER.groups.solved_together as f64, SOLVER.groups.solutions as f64],
+        &[
+            SOLVER.groups.contacts as f64,
+            SOLVER.groups.solved_together as f64,
+            SOLVER.groups.solutions as f64,
+        ],
         "",
-        "Contacts in a group, contacts that are solved together for it, and solutions after which a group is factored again.",
+        "Contacts in a group, contacts that are solved together for it, and solutions after which a group is \
+         factored again.",
         "numerics",
     ),
     Constant::new(

@@ -40,11 +40,17 @@ impl<'a> AsperityRun<'a> {
         Self { problem, settings, at: checkpoint.unwrap_or_default() }
     }
 
-    /// Follows all branches that are left. `keep` receives every new checkpoint, `progress` the position that is reached.
+    /// Follows all branches that are left. `keep` receives every new checkpoint, `progress` the position that
+    /// is reached.
     ///
     /// # Errors
-    /// If no load has a result: a load that is not reached within 100 rms heights, or a mean penetration without an equilibrium.
-    pub(super) fn follow(mut self, keep: &mut dyn FnMut(&Checkpoint), progress: &dyn Fn(LoopPosition)) -> Result<Cycle, PhysicsError> {
+    /// If no load has a result: a load that is not reached within 100 rms heights, or a mean penetration
+    /// without an equilibrium.
+    pub(super) fn follow(
+        mut self,
+        keep: &mut dyn FnMut(&Checkpoint),
+        progress: &dyn Fn(LoopPosition),
+    ) -> Result<Cycle, PhysicsError> {
         let loads = self.settings.max_loads.len();
         let unreached = run_branches(&mut self, loads, &mut |run| keep(&run.at), progress)?;
         Ok(Cycle { unreached, ..self.at.cycle })
@@ -60,11 +66,17 @@ impl BranchRun for AsperityRun<'_> {
         self.at.cycle.turning.len()
     }
 
-    fn advance(&mut self, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
+    fn advance(
+        &mut self,
+        reversal: Option<usize>,
+        progress: &dyn Fn(LoopPosition),
+    ) -> Result<bool, PhysicsError> {
         let (problem, settings, Checkpoint { cycle, leg, .. }) = (self.problem, self.settings, &mut self.at);
         let Some(k) = reversal else {
             let begun = leg.take().unwrap_or_else(|| Leg::loading(problem, settings));
-            *leg = load(problem, settings, begun, cycle, &|at| progress(LoopPosition { done: 0.5 * at.done, ..at }))?;
+            *leg = load(problem, settings, begun, cycle, &|at| {
+                progress(LoopPosition { done: 0.5 * at.done, ..at });
+            })?;
             return Ok(leg.is_none());
         };
         let (max_load, all) = (settings.max_loads[k], settings.max_loads.len());
@@ -92,7 +104,8 @@ impl BranchRun for AsperityRun<'_> {
 impl Asperities {
     /// Loads to the mean penetration `turn` \[m\] and unloads from there, under displacement control alone.
     ///
-    /// The load at the reversal may be tensile. `max_loads` of the settings is not used, and the unloading steps have none.
+    /// The load at the reversal may be tensile. `max_loads` of the settings is not used, and the unloading
+    /// steps have none.
     ///
     /// # Errors
     /// A mean penetration without an equilibrium.
@@ -138,7 +151,10 @@ impl Leg {
         let spacing = settings.grid(problem);
         let number = (problem.first_contact_m() / spacing).floor() - 1.0;
         let state = State::free(problem, number * spacing);
-        Self { recorder: Recorder::new(Branch::Loading, None, number, 0), carried: PathCheckpoint::begin(problem, state, 1.0) }
+        Self {
+            recorder: Recorder::new(Branch::Loading, None, number, 0),
+            carried: PathCheckpoint::begin(problem, state, 1.0),
+        }
     }
 
     /// Unloading branch from a state at a load reversal, which is sufficient.
@@ -167,11 +183,17 @@ fn load(
         }
         let Some(max_load) = settings.max_loads.get(cycle.turning.len()) else { return Ok(Next::End) };
         recorder.grid_points(settings, path, cycle)?;
-        let (reached, mean_penetration_m) = (path.totals().load_n / problem.load_unit_n(), path.state().mean_penetration_m);
+        let (reached, mean_penetration_m) =
+            (path.totals().load_n / problem.load_unit_n(), path.state().mean_penetration_m);
         if mean_penetration_m > 100.0 * problem.rms_height_m {
             return Err(LoopError::LoadNotReached { wanted: *max_load, reached, mean_penetration_m }.into());
         }
-        progress(LoopPosition { done: (reached / last).clamp(0.0, 1.0), steps: cycle.steps.len(), unloading: false, load: reached });
+        progress(LoopPosition {
+            done: (reached / last).clamp(0.0, 1.0),
+            steps: cycle.steps.len(),
+            unloading: false,
+            load: reached,
+        });
         Ok(if settings.rests(path, from) { Next::Rest } else { Next::On })
     })?;
     Ok(left.map(|carried| Leg { recorder, carried }))
@@ -192,7 +214,12 @@ fn unload(
         let full = *full.get_or_insert(path.totals().area_m2);
         recorder.grid_points(settings, path, cycle)?;
         let load = path.totals().load_n / problem.load_unit_n();
-        progress(LoopPosition { done: 1.0 - path.totals().area_m2 / full, steps: cycle.steps.len(), unloading: true, load });
+        progress(LoopPosition {
+            done: 1.0 - path.totals().area_m2 / full,
+            steps: cycle.steps.len(),
+            unloading: true,
+            load,
+        });
         if path.state().contacts.is_empty() {
             if recorder.lacks_events(path) {
                 // The last spot has left contact between two grid points.
@@ -243,10 +270,11 @@ fn travel(
     }
 }
 
-/// Refuses a state whose contact area Σπa² exceeds the nominal area A0, or whose largest contact spans the square.
+/// Refuses a state whose contact area Σπa² exceeds the nominal area A0, or whose largest contact spans the
+/// square.
 ///
-/// The area of the union of the contacts is smaller than that sum. `load_before_n` is the load \[N\] of the increment before, for the error: that of the
-/// refused state is meaningless.
+/// The area of the union of the contacts is smaller than that sum. `load_before_n` is the load \[N\] of the
+/// increment before, for the error: that of the refused state is meaningless.
 ///
 /// # Errors
 /// [`LoopError::ExcessArea`].
@@ -258,5 +286,9 @@ fn check_area(path: &EquilibriumPath, load_before_n: f64) -> Result<(), LoopErro
         return Ok(());
     }
     // Not −0.
-    Err(LoopError::ExcessArea { mean_penetration_m: path.state().mean_penetration_m + 0.0, share, load_before_n })
+    Err(LoopError::ExcessArea {
+        mean_penetration_m: path.state().mean_penetration_m + 0.0,
+        share,
+        load_before_n,
+    })
 }

@@ -1,7 +1,9 @@
-//! The asperity model of a height map, in SI units: asperities, contact problem and settings from a surface, a material and options.
+//! The asperity model of a height map, in SI units: asperities, contact problem and settings from a surface,
+//! a material and options.
 //!
-//! [`Asperities::new`] finds the asperities; [`Asperities::run`](crate::cycle::Method::run) loads and unloads them. Asperities are JKR contacts that interact
-//! through the elastic displacement [`field`] of the half-space. The algorithm is at the head of [`path`].
+//! [`Asperities::new`] finds the asperities; [`Asperities::run`](crate::cycle::Method::run) loads and unloads
+//! them. Asperities are JKR contacts that interact through the elastic displacement
+//! [`field`] of the half-space. The algorithm is at the head of [`path`].
 
 mod constants;
 pub mod contact;
@@ -39,7 +41,8 @@ const VERSIONS: &[(u32, &str)] = &[
 pub struct Options {
     /// Options of the contact model.
     pub rules: Rules,
-    /// Step of mean penetration over the rms height. It does not change results, which are located between the steps.
+    /// Step of mean penetration over the rms height. It does not change results, which are located between
+    /// the steps.
     pub approach_step: f64,
     /// Steps of which the contact spots are kept.
     pub contacts: KeptContacts,
@@ -49,7 +52,12 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { rules: Rules::default(), approach_step: 0.01, contacts: KeptContacts::Turning, numerics: Numerics::DEFAULT }
+        Self {
+            rules: Rules::default(),
+            approach_step: 0.01,
+            contacts: KeptContacts::Turning,
+            numerics: Numerics::DEFAULT,
+        }
     }
 }
 
@@ -65,8 +73,14 @@ impl Asperities {
     /// The asperities of a surface, with loads `F/(E* A0)` at the load reversals, ascending.
     ///
     /// # Errors
-    /// A surface without asperities or with too few points per shortest wavelength; Tabor parameters below 2 with Wu's criterion.
-    pub fn new(map: &HeightMap<'_>, material: &Material, max_loads: &[f64], options: &Options) -> Result<Self, PhysicsError> {
+    /// A surface without asperities or with too few points per shortest wavelength; Tabor parameters below 2
+    /// with Wu's criterion.
+    pub fn new(
+        map: &HeightMap<'_>,
+        material: &Material,
+        max_loads: &[f64],
+        options: &Options,
+    ) -> Result<Self, PhysicsError> {
         let points = map.shortest_wavelength_m * map.heights_m.nrows() as f64 / map.length_m;
         let summits = if map.is_periodic {
             find_summits(map.heights_m, map.length_m, points)?.list
@@ -89,9 +103,14 @@ impl Asperities {
         options: &Options,
     ) -> Result<Self, PhysicsError> {
         let Options { approach_step, contacts, numerics, .. } = *options;
-        let problem = Problem::new(summits, length_m, rms_height_m, *material, options.rules)?.with_numerics(numerics);
-        let rest_every = (summits.len() >= numerics.steps.checkpoints_from).then_some(numerics.steps.checkpoint_interval);
-        Ok(Self { problem, settings: Settings { max_loads: max_loads.to_vec(), approach_step, contacts, rest_every } })
+        let problem =
+            Problem::new(summits, length_m, rms_height_m, *material, options.rules)?.with_numerics(numerics);
+        let rest_every =
+            (summits.len() >= numerics.steps.checkpoints_from).then_some(numerics.steps.checkpoint_interval);
+        Ok(Self {
+            problem,
+            settings: Settings { max_loads: max_loads.to_vec(), approach_step, contacts, rest_every },
+        })
     }
 }
 

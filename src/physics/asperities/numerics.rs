@@ -16,7 +16,8 @@ pub struct Numerics {
 
 impl Numerics {
     /// The choices of the program.
-    pub const DEFAULT: Self = Self { steps: Steps::DEFAULT, events: Events::DEFAULT, solver: Solver::DEFAULT };
+    pub const DEFAULT: Self =
+        Self { steps: Steps::DEFAULT, events: Events::DEFAULT, solver: Solver::DEFAULT };
 }
 
 /// Increments of the path, in units of the rms height `h_rms` and of the scale `d` of the path: the mean
@@ -302,8 +303,21 @@ impl Solver {
         rates_residual_intermediate: 3e-4,
         free_interval: 0.2,
         curve_points: 50,
-        groups: Groups { contacts: 24, solved_together: 44, solutions: 8, count_ratio: 1.3, point_load_distance: 2.0 },
-        relaxation: Relaxation { steps: 1000, finish: 100.0, finish_growth: 1e3, longest_step: 1e9, step_growth: 3.0, attempts: 24 },
+        groups: Groups {
+            contacts: 24,
+            solved_together: 44,
+            solutions: 8,
+            count_ratio: 1.3,
+            point_load_distance: 2.0,
+        },
+        relaxation: Relaxation {
+            steps: 1000,
+            finish: 100.0,
+            finish_growth: 1e3,
+            longest_step: 1e9,
+            step_growth: 3.0,
+            attempts: 24,
+        },
     };
 }
 

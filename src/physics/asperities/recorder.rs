@@ -62,7 +62,12 @@ impl Recorder {
     }
 
     /// Records the beginning, and the grid points passed in the last increment.
-    pub(crate) fn grid_points(&mut self, settings: &Settings, path: &mut EquilibriumPath, cycle: &mut Cycle) -> Result<(), PhysicsError> {
+    pub(crate) fn grid_points(
+        &mut self,
+        settings: &Settings,
+        path: &mut EquilibriumPath,
+        cycle: &mut Cycle,
+    ) -> Result<(), PhysicsError> {
         let end = path.state().mean_penetration_m;
         self.grid_points_until(end, settings, path, cycle)
     }
@@ -97,7 +102,10 @@ impl Recorder {
     fn passes_landmark(&self, settings: &Settings, problem: &Problem, load: f64) -> bool {
         let Some(before) = self.load_before else { return false };
         match self.branch {
-            Branch::Loading => settings.max_loads.iter().any(|most| (before..load).contains(&(0.5 * most * problem.load_unit_n()))),
+            Branch::Loading => settings
+                .max_loads
+                .iter()
+                .any(|most| (before..load).contains(&(0.5 * most * problem.load_unit_n()))),
             Branch::Unloading => before > 0.0 && load <= 0.0,
         }
     }
@@ -135,11 +143,19 @@ impl Recorder {
         let at = excursion.unwrap_or(path);
         let problem = &*at.problem();
         let state = at.state();
-        let passed = |mean_penetration: f64| excursion.is_none() || (mean_penetration - state.mean_penetration_m) * path.sense() <= 0.0;
-        let recent: Vec<PathEvent> =
-            path.log().events[self.events_before..].iter().take_while(|event| passed(event.mean_penetration_m)).copied().collect();
-        let ways: Vec<f64> =
-            path.log().segments[self.ways_before..].iter().take_while(|way| passed(way.mean_penetration)).map(|way| way.least).collect();
+        let passed = |mean_penetration: f64| {
+            excursion.is_none() || (mean_penetration - state.mean_penetration_m) * path.sense() <= 0.0
+        };
+        let recent: Vec<PathEvent> = path.log().events[self.events_before..]
+            .iter()
+            .take_while(|event| passed(event.mean_penetration_m))
+            .copied()
+            .collect();
+        let ways: Vec<f64> = path.log().segments[self.ways_before..]
+            .iter()
+            .take_while(|way| passed(way.mean_penetration))
+            .map(|way| way.least)
+            .collect();
         let effort = path.effort();
         cycle.steps.push(Step {
             branch: self.branch,
@@ -153,7 +169,8 @@ impl Recorder {
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
             work_j: at.log().work_j,
             numerics: StepNumerics {
-                is_converged: state.residual_m <= problem.numerics.solver.converged_residual * problem.rms_height_m,
+                is_converged: state.residual_m
+                    <= problem.numerics.solver.converged_residual * problem.rms_height_m,
                 residual_m: Some(state.residual_m),
                 drift_m: Some(path.log().drift_m),
                 stability: Some(state.stability),
@@ -165,13 +182,36 @@ impl Recorder {
         self.ways_before += ways.len();
         self.effort_before = effort;
         cycle.events.extend(recent.into_iter().map(|event| {
-            let PathEvent { kind, asperity, status, cause, mean_penetration_m, avalanche, before, after, energy_lost_j } = event;
+            let PathEvent {
+                kind,
+                asperity,
+                status,
+                cause,
+                mean_penetration_m,
+                avalanche,
+                before,
+                after,
+                energy_lost_j,
+            } = event;
             let site = Site::Asperity(problem.number(asperity));
-            Event { step: number, kind, site, status: Some(status), cause, mean_penetration_m, avalanche, before, after, energy_lost_j }
+            Event {
+                step: number,
+                kind,
+                site,
+                status: Some(status),
+                cause,
+                mean_penetration_m,
+                avalanche,
+                before,
+                after,
+                energy_lost_j,
+            }
         }));
         let keep = match settings.contacts {
             KeptContacts::All => true,
-            KeptContacts::Turning => reason == StepReason::Reversal || self.passes_landmark(settings, problem, at.totals().load_n),
+            KeptContacts::Turning => {
+                reason == StepReason::Reversal || self.passes_landmark(settings, problem, at.totals().load_n)
+            }
             KeptContacts::None => false,
         };
         if keep {
@@ -213,7 +253,9 @@ fn overlapping_count(problem: &Problem, state: &State) -> usize {
     let touches = |i: usize| {
         let a = state.radius[i];
         let mut found = false;
-        problem.neighbours.within(i, a + largest, |r, j| found |= state.radius[j] > 0.0 && r < a + state.radius[j]);
+        problem
+            .neighbours
+            .within(i, a + largest, |r, j| found |= state.radius[j] > 0.0 && r < a + state.radius[j]);
         found
     };
     state.contacts.iter().filter(|i| touches(**i)).count()
@@ -237,8 +279,14 @@ fn spots_of(problem: &Problem, state: &State, step: usize) -> Vec<Contact> {
             }
         })
         .collect();
-    let covered = state.status.iter().enumerate().filter(|(_, status)| matches!(status, Status::Covered { .. }));
-    spots.extend(covered.map(|(i, _)| Contact { step, asperity: Some(problem.number(i)), covered: true, ..Contact::default() }));
+    let covered =
+        state.status.iter().enumerate().filter(|(_, status)| matches!(status, Status::Covered { .. }));
+    spots.extend(covered.map(|(i, _)| Contact {
+        step,
+        asperity: Some(problem.number(i)),
+        covered: true,
+        ..Contact::default()
+    }));
     spots.sort_by_key(|spot| spot.asperity);
     spots
 }

@@ -1,7 +1,7 @@
 //! Unloading without adhesion: the loading path in reverse.
 //!
-//! At `Δγ = 0` the half-space is elastic and the contact has no memory: its state is a function of the mean penetration alone.
-//! The loop encloses no area, and the unloading branch is the loading branch in reverse.
+//! At `Δγ = 0` the half-space is elastic and the contact has no memory: its state is a function of the mean
+//! penetration alone. The loop encloses no area, and the unloading branch is the loading branch in reverse.
 //! Each event is reversed at its mean penetration and returns its energy: Θ is exactly 0.
 
 use super::settings::Cycle;
@@ -17,7 +17,13 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
     let reversal = cycle.turning[k].0;
     let others: Vec<usize> = cycle.turning[..k].iter().map(|(step, _)| *step).collect();
     let work_j = cycle.steps[reversal].work_j;
-    let avalanches = cycle.events.iter().filter(|event| event.step <= reversal).map(|event| event.avalanche).max().unwrap_or(0);
+    let avalanches = cycle
+        .events
+        .iter()
+        .filter(|event| event.step <= reversal)
+        .map(|event| event.avalanche)
+        .max()
+        .unwrap_or(0);
     let mut reverse = undo(&cycle.events, reversal, avalanches);
     let mut pending: Vec<Event> = Vec::new();
     let mut least_load_n = f64::INFINITY;
@@ -31,7 +37,12 @@ pub(crate) fn retrace(cycle: &mut Cycle, k: usize, max_load: Option<f64>, contac
             cycle.steps.push(reversed(&step, max_load, &undone, least_load_n, work_j));
             cycle.events.extend(undone.into_iter().map(|event| Event { step: number, ..event }));
             if contacts == KeptContacts::All {
-                let kept: Vec<Contact> = cycle.contacts.iter().filter(|c| c.step == at).map(|c| Contact { step: number, ..*c }).collect();
+                let kept: Vec<Contact> = cycle
+                    .contacts
+                    .iter()
+                    .filter(|c| c.step == at)
+                    .map(|c| Contact { step: number, ..*c })
+                    .collect();
                 cycle.contacts.extend(kept);
             }
             least_load_n = step.load_n;
@@ -49,7 +60,11 @@ fn reversed(step: &Step, max_load: Option<f64>, undone: &[Event], least_load_n: 
         branch: Branch::Unloading,
         max_load,
         least_load_n,
-        counts: StepCounts { held: 0, events: undone.iter().map(|event| event.kind).collect(), ..step.counts.clone() },
+        counts: StepCounts {
+            held: 0,
+            events: undone.iter().map(|event| event.kind).collect(),
+            ..step.counts.clone()
+        },
         dissipated_j: undone.iter().map(|event| event.energy_lost_j).sum(),
         work_j: step.work_j - work_j,
         numerics: StepNumerics { drift_m: Some(0.0), effort: Effort::default(), ..step.numerics.clone() },

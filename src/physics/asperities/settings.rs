@@ -32,6 +32,8 @@ impl Settings {
     /// True if the path has reached a checkpoint position other than `from` \[m\].
     pub(super) fn rests(&self, path: &EquilibriumPath, from: f64) -> bool {
         let at = path.state().mean_penetration_m;
-        self.rest_every.is_some_and(|every| path.is_exact() && at != from && is_multiple(at, every * path.problem().rms_height_m))
+        self.rest_every.is_some_and(|every| {
+            path.is_exact() && at != from && is_multiple(at, every * path.problem().rms_height_m)
+        })
     }
 }

@@ -1,4 +1,5 @@
-//! The branches of a cycle, for every method: one loading, and an unloading from each load reversal that it reaches.
+//! The branches of a cycle, for every method: one loading, and an unloading from each load reversal that it
+//! reaches.
 
 use crate::{LoopError, LoopPosition, PhysicsError};
 use serde::{Deserialize, Serialize};
@@ -18,11 +19,16 @@ pub(crate) trait BranchRun {
     /// Number of load reversals that the loading has reached.
     fn reversals(&self) -> usize;
 
-    /// Continues a branch to its next checkpoint: the loading, or the unloading from a load reversal. True at its end.
+    /// Continues a branch to its next checkpoint: the loading, or the unloading from a load reversal. True at
+    /// its end.
     ///
     /// # Errors
     /// [`LoopError`] if the branch cannot go on; any other error ends the cycle.
-    fn advance(&mut self, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError>;
+    fn advance(
+        &mut self,
+        reversal: Option<usize>,
+        progress: &dyn Fn(LoopPosition),
+    ) -> Result<bool, PhysicsError>;
 
     /// Checks the energies of the loop to a load reversal, whose unloading is the last branch.
     ///
@@ -34,7 +40,8 @@ pub(crate) trait BranchRun {
     fn forget(&mut self, reversal: usize);
 }
 
-/// Follows all branches to `loads` load reversals from where they are, and returns the load reversals without a result.
+/// Follows all branches to `loads` load reversals from where they are, and returns the load reversals without
+/// a result.
 ///
 /// `keep` is called at every checkpoint.
 ///
@@ -70,7 +77,11 @@ pub(crate) fn run_branches<R: BranchRun>(
 }
 
 /// Continues a branch. A load reversal that was not reached has no unloading.
-fn advance<R: BranchRun>(run: &mut R, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
+fn advance<R: BranchRun>(
+    run: &mut R,
+    reversal: Option<usize>,
+    progress: &dyn Fn(LoopPosition),
+) -> Result<bool, PhysicsError> {
     if reversal.is_some_and(|k| k >= run.reversals()) {
         return Ok(true);
     }

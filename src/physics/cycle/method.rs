@@ -1,4 +1,5 @@
-//! The contract of a method with the pipeline: it loads and unloads a surface, and returns one [`Cycle`] in SI units.
+//! The contract of a method with the pipeline: it loads and unloads a surface, and returns one [`Cycle`] in
+//! SI units.
 
 use super::Cycle;
 use crate::{LoopPosition, PhysicsError};
@@ -7,8 +8,9 @@ use serde::de::DeserializeOwned;
 
 /// A method, with the surface, material and options of one cycle.
 ///
-/// What reads the [`Cycle`] need not know the method. A new method is an implementation of this trait; the program then needs its options among the parameters
-/// of a case, their keys, and one arm where a cycle is set up.
+/// What reads the [`Cycle`] need not know the method. A new method is an implementation of this trait; the
+/// program then needs its options among the parameters of a case, their keys, and one arm where a cycle is
+/// set up.
 pub trait Method {
     /// Unfinished cycle, sufficient to continue in another process with identical results.
     type Checkpoint: Serialize + DeserializeOwned;
@@ -22,7 +24,8 @@ pub trait Method {
 
     /// Loads to the largest of the loads and unloads from each, from the beginning or from a checkpoint.
     ///
-    /// `keep` receives every new checkpoint, `progress` the position that is reached. Loads without a result are listed in the cycle, with their error.
+    /// `keep` receives every new checkpoint, `progress` the position that is reached. Loads without a result
+    /// are listed in the cycle, with their error.
     ///
     /// # Errors
     /// If no load has a result.
@@ -41,7 +44,8 @@ pub trait Method {
         self.run_from(None, &mut |_| {}, &|_| {})
     }
 
-    /// Unloads from a state at the load reversal of a number: the steps that [`run`](Self::run) has from there, numbered from 0.
+    /// Unloads from a state at the load reversal of a number: the steps that [`run`](Self::run) has from
+    /// there, numbered from 0.
     ///
     /// # Errors
     /// If the surfaces do not separate.

@@ -233,7 +233,8 @@ impl Merged {
 
 /// Merged spot, its number, and the step at which it was created.
 ///
-/// Numbers follow those of the asperities of the surface. An unloading branch continues the numbers of its load reversal.
+/// Numbers follow those of the asperities of the surface. An unloading branch continues the numbers of its
+/// load reversal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MergedAt {
     /// Number of the step.
@@ -295,9 +296,21 @@ impl<S> Cycle<S> {
         let rest = |step: usize| step.checked_sub(loading);
         Self {
             steps: self.steps[loading..].to_vec(),
-            contacts: self.contacts.into_iter().filter_map(|c| Some(Contact { step: rest(c.step)?, ..c })).collect(),
-            events: self.events.into_iter().filter_map(|e| Some(Event { step: rest(e.step)?, ..e })).collect(),
-            merged: self.merged.into_iter().filter_map(|m| Some(MergedAt { step: rest(m.step)?, ..m })).collect(),
+            contacts: self
+                .contacts
+                .into_iter()
+                .filter_map(|c| Some(Contact { step: rest(c.step)?, ..c }))
+                .collect(),
+            events: self
+                .events
+                .into_iter()
+                .filter_map(|e| Some(Event { step: rest(e.step)?, ..e }))
+                .collect(),
+            merged: self
+                .merged
+                .into_iter()
+                .filter_map(|m| Some(MergedAt { step: rest(m.step)?, ..m }))
+                .collect(),
             ..Self::default()
         }
     }

@@ -13,7 +13,8 @@ const EQUILIBRIUM: Minimization = Minimization::DEFAULT;
 const PATCHES: PatchLimits = PatchLimits::DEFAULT;
 
 /// Effect of weak adhesion.
-const WEAKER: &str = "From this `U_el/Δγ` on, the step is divided by the second number, and the precision by the third.";
+const WEAKER: &str =
+    "From this `U_el/Δγ` on, the step is divided by the second number, and the precision by the third.";
 
 const fn weak(at: usize) -> [f64; 3] {
     let Weak { ratio, steps, precision } = STEPS.weak[at];
@@ -22,7 +23,13 @@ const fn weak(at: usize) -> [f64; 3] {
 
 /// Constants of the solver on a grid.
 pub(crate) const CONSTANTS: &[Constant] = &[
-    Constant::new("width of the kernel of the law", &[KERNEL_WIDTH], "`dx`", "Gaussian `W` of the bonded attraction.", "law"),
+    Constant::new(
+        "width of the kernel of the law",
+        &[KERNEL_WIDTH],
+        "`dx`",
+        "Gaussian `W` of the bonded attraction.",
+        "law",
+    ),
     Constant::new(
         "stiffness of the wall",
         &[WALL_STIFFNESS],
@@ -30,8 +37,20 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "Spring at small gaps and in compression, bonded attraction.",
         "law",
     ),
-    Constant::new("overlap with linear repulsion", &[MAX_OVERLAP], "`ρ`", "Beyond it Morse's law goes on linearly.", "law"),
-    Constant::new("gap without attraction", &[NEGLIGIBLE_GAP], "`ρ`", "Beyond it Morse's law is not evaluated.", "law"),
+    Constant::new(
+        "overlap with linear repulsion",
+        &[MAX_OVERLAP],
+        "`ρ`",
+        "Beyond it Morse's law goes on linearly.",
+        "law",
+    ),
+    Constant::new(
+        "gap without attraction",
+        &[NEGLIGIBLE_GAP],
+        "`ρ`",
+        "Beyond it Morse's law is not evaluated.",
+        "law",
+    ),
     Constant::new(
         "residual at which bonds change",
         &[EQUILIBRIUM.bond_update_residual],
@@ -85,10 +104,17 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "equilibria near the load reversal",
         &[REVERSAL.precision, REVERSAL.equilibria as f64],
         "",
-        "Their tolerance relative to `boundary_elements.precision`, and the maximum number of equilibria of a search.",
+        "Their tolerance relative to `boundary_elements.precision`, and the maximum number of equilibria of \
+         a search.",
         "numerics",
     ),
-    Constant::new("smallest event", &[STEPS.event_fraction], "dissipated energy", "Relative to the energy dissipated so far.", "numerics"),
+    Constant::new(
+        "smallest event",
+        &[STEPS.event_fraction],
+        "dissipated energy",
+        "Relative to the energy dissipated so far.",
+        "numerics",
+    ),
     Constant::new(
         "uncertainty of a step",
         &[STEPS.bend_uncertainty, STEPS.jump_uncertainty],
@@ -124,7 +150,13 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "A step of unloading that may have passed a larger tension is halved.",
         "numerics",
     ),
-    Constant::new("rate of extrapolation `du/dΔ`", &[STEPS.max_rate], "", "Larger rates are scaled to it.", "numerics"),
+    Constant::new(
+        "rate of extrapolation `du/dΔ`",
+        &[STEPS.max_rate],
+        "",
+        "Larger rates are scaled to it.",
+        "numerics",
+    ),
     Constant::new(
         "extrapolated overlap",
         &[STEPS.extrapolated_overlap],
@@ -162,7 +194,13 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "A step with a larger one is halved, up to `boundary_elements.halvings` times.",
         "numerics",
     ),
-    Constant::new("largest residual", &[EQUILIBRIUM.largest_residual], "of the rms residual", "Of an equilibrium.", "numerics"),
+    Constant::new(
+        "largest residual",
+        &[EQUILIBRIUM.largest_residual],
+        "of the rms residual",
+        "Of an equilibrium.",
+        "numerics",
+    ),
     Constant::new(
         "iterations",
         &[EQUILIBRIUM.iterations as f64],
@@ -177,5 +215,11 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "Steps of the table `adhesionless`, in those of the cycle.",
         "numerics",
     ),
-    Constant::new("reach of bonds", &[EQUILIBRIUM.bond_margin as f64], "`dx`", "Points this close to contact are bonded.", "numerics"),
+    Constant::new(
+        "reach of bonds",
+        &[EQUILIBRIUM.bond_margin as f64],
+        "`dx`",
+        "Points this close to contact are bonded.",
+        "numerics",
+    ),
 ];

@@ -22,8 +22,8 @@ pub struct FreeStep {
 }
 
 impl Elements {
-    /// Loading of the surface without adhesion, until the adhesive states that follow from it reach the largest load, at most by the range of the heights
-    /// beyond the cycle.
+    /// Loading of the surface without adhesion, until the adhesive states that follow from it reach the
+    /// largest load, at most by the range of the heights beyond the cycle.
     ///
     /// # Errors
     /// Not enough memory.
@@ -35,11 +35,18 @@ impl Elements {
         let deepest_m = cycle.steps.iter().map(|step| step.mean_penetration_m).fold(0.0, f64::max);
         let farthest = range + deepest_m / units.spacing_m();
         let mut is_enough = |steps: &[GridStep]| {
-            let is_reached = || adhesive_curve(&curve(steps), work_length).last().is_some_and(|point| point.load_m2 > wanted);
+            let is_reached = || {
+                adhesive_curve(&curve(steps), work_length).last().is_some_and(|point| point.load_m2 > wanted)
+            };
             steps.last().is_some_and(|step| step.mean_penetration > farthest) || is_reached()
         };
         let free = problem.without_adhesion();
-        let steps = load_freely(&free, free.numerics.steps.free_step * settings.step, settings.accuracy, &mut is_enough)?;
+        let steps = load_freely(
+            &free,
+            free.numerics.steps.free_step * settings.step,
+            settings.accuracy,
+            &mut is_enough,
+        )?;
         let in_si = |step: &GridStep| FreeStep {
             mean_penetration_m: step.mean_penetration * units.spacing_m(),
             load_n: step.totals.load * units.load_n(),

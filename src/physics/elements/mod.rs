@@ -1,7 +1,9 @@
-//! Boundary elements of a height map, in SI units: grid, law and settings from a surface, a material and options.
+//! Boundary elements of a height map, in SI units: grid, law and settings from a surface, a material and
+//! options.
 //!
-//! [`Elements::new`] has what decides on the accuracy of a cycle; [`Elements::run`] loads and unloads. The solver itself is in the modules of this folder.
-//! Its lengths are in grid spacings `dx`, stresses in E\*, energies in `E* dx³`; [`Units`] has their values in SI units.
+//! [`Elements::new`] has what decides on the accuracy of a cycle; [`Elements::run`] loads and unloads. The
+//! solver itself is in the modules of this folder. Its lengths are in grid spacings
+//! `dx`, stresses in E\*, energies in `E* dx³`; [`Units`] has their values in SI units.
 
 mod constants;
 pub mod equilibrium;
@@ -41,7 +43,8 @@ use problem::{Attraction as Rule, Problem};
 pub const PER_WAVELENGTH: f64 = 16.0;
 /// Maximum number of points along a side of such a grid.
 const MAX_POINTS: f64 = 65_536.0;
-/// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps and checkpoint.
+/// Fields of numbers that the solver needs, its patches included, and those of a load reversal with its maps
+/// and checkpoint.
 const FIELDS: usize = 21;
 const FIELDS_OF_REVERSAL: usize = 8;
 
@@ -62,7 +65,8 @@ const VERSIONS: &[(u32, &str)] = &[
     (10, "steps are halved for jumps and for the maximum tension alone"),
     (
         11,
-        "loads are searched off the path and do not change one another; area of the scan without its mirror images. One load on a periodic surface: as 10",
+        "loads are searched off the path and do not change one another; area of the scan without its mirror \
+         images. One load on a periodic surface: as 10",
     ),
 ];
 
@@ -84,11 +88,21 @@ impl Elements {
     ///
     /// # Errors
     /// [`PhysicsError::Surface`] for heights or a grid that cannot be used.
-    pub fn new(map: &HeightMap<'_>, material: &Material, max_loads: &[f64], options: &Options) -> Result<Self, PhysicsError> {
+    pub fn new(
+        map: &HeightMap<'_>,
+        material: &Material,
+        max_loads: &[f64],
+        options: &Options,
+    ) -> Result<Self, PhysicsError> {
         let is_mirrored = !map.is_periodic;
         let length_m = if is_mirrored { 2.0 * map.length_m } else { map.length_m };
-        let points = if options.points == 0 { points_for(length_m / map.shortest_wavelength_m) } else { options.points };
-        // With mirror images the grid is symmetric about the edges of the surface, half a pixel outside its first and last points.
+        let points = if options.points == 0 {
+            points_for(length_m / map.shortest_wavelength_m)
+        } else {
+            options.points
+        };
+        // With mirror images the grid is symmetric about the edges of the surface, half a pixel outside its
+        // first and last points.
         let (spacing, pixel) = (length_m / points as f64, map.length_m / map.heights_m.nrows() as f64);
         let first_m = if is_mirrored { 0.5 * (spacing - pixel) } else { 0.0 };
         let (modulus_pa, rms_height_m) = (material.contact_modulus_pa, map.rms_height_m);
@@ -96,7 +110,8 @@ impl Elements {
         let flattening = measured_flattening(map.square(), map.shortest_wavelength_m, modulus_pa)?;
         let ratio = flattening.persson_tosatti(material.work_of_adhesion_j_m2);
         let whole = if is_mirrored { mirrored(map.heights_m)? } else { map.heights_m.to_owned() };
-        let problem = problem(&units, material, resample_from(whole.view(), points, first_m / pixel)?, options)?;
+        let problem =
+            problem(&units, material, resample_from(whole.view(), points, first_m / pixel)?, options)?;
         Ok(Self {
             problem,
             settings: settings(&units, max_loads, options, ratio),
@@ -146,7 +161,8 @@ impl Method for Elements {
     }
 
     fn unload_from(&self, reversal: usize, state: Turning) -> Result<Cycle<Turning>, PhysicsError> {
-        let cycle = solver::unload_from(&self.problem, &self.settings, reversal, &state).map_err(|error| self.units.end(error))?;
+        let cycle = solver::unload_from(&self.problem, &self.settings, reversal, &state)
+            .map_err(|error| self.units.end(error))?;
         Ok(self.record(cycle))
     }
 
@@ -156,7 +172,12 @@ impl Method for Elements {
 }
 
 /// The contact problem of heights \[m\] on the grid.
-fn problem(units: &Units, material: &Material, heights_m: Array2<f64>, options: &Options) -> Result<Problem, PhysicsError> {
+fn problem(
+    units: &Units,
+    material: &Material,
+    heights_m: Array2<f64>,
+    options: &Options,
+) -> Result<Problem, PhysicsError> {
     let spacing = units.spacing_m();
     let work = material.adhesion_length_m() / spacing;
     let top = heights_m.iter().copied().fold(f64::MIN, f64::max);
@@ -166,7 +187,11 @@ fn problem(units: &Units, material: &Material, heights_m: Array2<f64>, options: 
         Attraction::Range { range_m } => (Law::morse(work, range_m / spacing), Rule::Range),
         Attraction::Bonded { nucleation_m, strength } => (
             Law::crack(work),
-            Rule::Bonded { margin: options.numerics.equilibrium.bond_margin, nucleation: nucleation_m / spacing, strength },
+            Rule::Bonded {
+                margin: options.numerics.equilibrium.bond_margin,
+                nucleation: nucleation_m / spacing,
+                strength,
+            },
         ),
     };
     let half_space = HalfSpace::new(units.points, units.points)?;

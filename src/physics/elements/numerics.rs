@@ -177,14 +177,22 @@ pub struct PatchLimits {
 
 impl Numerics {
     /// The choices of the program.
-    pub const DEFAULT: Self =
-        Self { steps: Steps::DEFAULT, reversal: Reversal::DEFAULT, equilibrium: Minimization::DEFAULT, patches: PatchLimits::DEFAULT };
+    pub const DEFAULT: Self = Self {
+        steps: Steps::DEFAULT,
+        reversal: Reversal::DEFAULT,
+        equilibrium: Minimization::DEFAULT,
+        patches: PatchLimits::DEFAULT,
+    };
 
     /// Number of steps in one of the options, and the factor by which their precision is smaller, at a ratio
     /// `U_el/Δγ`.
     #[must_use]
     pub fn refinement(&self, ratio: f64) -> (f64, f64) {
-        self.steps.weak.iter().find(|weak| ratio > weak.ratio).map_or((1.0, 1.0), |weak| (weak.steps, weak.precision))
+        self.steps
+            .weak
+            .iter()
+            .find(|weak| ratio > weak.ratio)
+            .map_or((1.0, 1.0), |weak| (weak.steps, weak.precision))
     }
 }
 
@@ -192,7 +200,10 @@ impl Steps {
     /// The choices of the program.
     pub const DEFAULT: Self = Self {
         jump_tolerance: 0.03,
-        weak: [Weak { ratio: 150.0, steps: 30.0, precision: 10.0 }, Weak { ratio: 15.0, steps: 6.0, precision: 6.0 }],
+        weak: [
+            Weak { ratio: 150.0, steps: 30.0, precision: 10.0 },
+            Weak { ratio: 15.0, steps: 6.0, precision: 6.0 },
+        ],
         free_step: 2.0,
         event_fraction: 1e-5,
         bend_uncertainty: 0.05,
@@ -209,8 +220,14 @@ impl Steps {
 
 impl Reversal {
     /// The choices of the program.
-    pub const DEFAULT: Self =
-        Self { load_tolerance: 1e-5, jump_tolerance: 1e-3, precision: 0.02, precise_within: 0.02, bracket: 1e-5, equilibria: 40 };
+    pub const DEFAULT: Self = Self {
+        load_tolerance: 1e-5,
+        jump_tolerance: 1e-3,
+        precision: 0.02,
+        precise_within: 0.02,
+        bracket: 1e-5,
+        equilibria: 40,
+    };
 }
 
 impl Minimization {

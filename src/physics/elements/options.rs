@@ -10,7 +10,8 @@ pub enum Attraction {
     Bonded {
         /// Gap at which a point outside bonds \[m\]; 0: where the surfaces touch.
         nucleation_m: f64,
-        /// Tension over E\* at which contact opens inside: infinite where it opens from its edges only, 0 where the law alone decides.
+        /// Tension over E\* at which contact opens inside: infinite where it opens from its edges only, 0
+        /// where the law alone decides.
         strength: f64,
     },
     /// Morse's law of a range ρ.
@@ -25,7 +26,8 @@ pub enum Attraction {
 pub struct Options {
     /// Grid points along a side of the periodic square, mirror images included.
     ///
-    /// 0: those of [`points_for`](super::points_for). Twice as many take 5 to 8 times as long; Θ changes by 9 to 25 % from 8 to 16 per shortest wavelength.
+    /// 0: those of [`points_for`](super::points_for). Twice as many take 5 to 8 times as long; Θ changes by 9
+    /// to 25 % from 8 to 16 per shortest wavelength.
     pub points: usize,
     /// Attraction.
     pub attraction: Attraction,

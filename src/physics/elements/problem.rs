@@ -1,7 +1,8 @@
 //! A rough rigid surface against an elastic half-space, its states and their energy.
 //!
-//! With the displacement `u` (zero mean), the mean gap `D` and the heights `z`, the gap is `g = D + u − z` and the energy
-//! `Π(u; D) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ V'(g)` at the mean penetration `Δ = max z − D`.
+//! With the displacement `u` (zero mean), the mean gap `D` and the heights `z`, the gap is `g = D + u −
+//! z` and the energy `Π(u; D) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ
+//! V'(g)` at the mean penetration `Δ = max z − D`.
 
 use super::grid::half_space::remove_mean;
 use super::grid::half_space::{HalfSpace, Operator, Waves};
@@ -31,15 +32,17 @@ pub struct Problem {
 /// Points that attract.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Attraction {
-    /// The JKR limit, a range of attraction of 0: contact forms where the surfaces touch. The law acts on points that have touched and those within
-    /// `margin` points of contact. A point farther than `margin` from an open one opens only if its tension exceeds `strength`. A point without a
-    /// bond touches below the gap `nucleation`.
+    /// The JKR limit, a range of attraction of 0: contact forms where the surfaces touch. The law acts on
+    /// points that have touched and those within `margin` points of contact. A point farther than `margin`
+    /// from an open one opens only if its tension exceeds
+    /// `strength`. A point without a bond touches below the gap `nucleation`.
     Bonded {
         /// Points around a contact that are bonded.
         margin: usize,
         /// Gap at which a point outside bonds \[dx\].
         nucleation: f64,
-        /// Tension at which contact opens inside \[E*\]: infinite where it opens from its edges only, 0 where the law alone decides.
+        /// Tension at which contact opens inside \[E*\]: infinite where it opens from its edges only, 0 where
+        /// the law alone decides.
         strength: f64,
     },
     /// All points: the range of the law acts everywhere.
@@ -64,7 +67,8 @@ pub struct State {
     pub mean_penetration: f64,
     /// Displacement u, with zero mean \[dx\].
     pub displacement: Vec<f64>,
-    /// Elastic pressure `K u`, with zero mean \[E*\]; empty in a state that is kept, since it follows from the displacement.
+    /// Elastic pressure `K u`, with zero mean \[E*\]; empty in a state that is kept, since it follows from
+    /// the displacement.
     #[serde(skip)]
     pub pressure: Vec<f64>,
     /// Bond of each point.
@@ -117,11 +121,15 @@ impl Problem {
             mean_penetration,
             displacement: filled(points, 0.0)?,
             pressure: filled(points, 0.0)?,
-            bonds: filled(points, if self.attraction == Attraction::Range { Bonding::Bonded } else { Bonding::Free })?,
+            bonds: filled(
+                points,
+                if self.attraction == Attraction::Range { Bonding::Bonded } else { Bonding::Free },
+            )?,
         })
     }
 
-    /// Reference stress of the residual \[E*\]: the maximum tension; without adhesion, the range of the heights over the side.
+    /// Reference stress of the residual \[E*\]: the maximum tension; without adhesion, the range of the
+    /// heights over the side.
     pub(super) fn stress(&self) -> f64 {
         match self.attraction {
             Attraction::None => self.range() / self.half_space.columns() as f64,
@@ -129,7 +137,8 @@ impl Problem {
         }
     }
 
-    /// Largest change of the displacement in one iteration \[dx\]. Without adhesion the energy is convex, and there is no barrier to pass over.
+    /// Largest change of the displacement in one iteration \[dx\]. Without adhesion the energy is convex, and
+    /// there is no barrier to pass over.
     pub(super) fn reach(&self) -> f64 {
         match self.attraction {
             Attraction::None => self.range(),
@@ -175,12 +184,15 @@ impl Problem {
         state.bonds.iter().all(|bonding| *bonding == Bonding::Free)
     }
 
-    /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an open point.
+    /// Bonds the free points within the margin of a contact and opens the sealed ones within the margin of an
+    /// open point.
     ///
-    /// With [`Nucleation::Allowed`] free points that touch are a contact too, and sealed points whose tension exceeds the strength open. None of this raises
-    /// the energy. Returns the points whose bond has changed.
+    /// With [`Nucleation::Allowed`] free points that touch are a contact too, and sealed points whose tension
+    /// exceeds the strength open. None of this raises the energy. Returns the points whose bond has changed.
     pub fn update_bonds(&self, state: &mut State, nucleation: Nucleation) -> Vec<usize> {
-        let Attraction::Bonded { nucleation: nucleation_gap, strength, .. } = self.attraction else { return Vec::new() };
+        let Attraction::Bonded { nucleation: nucleation_gap, strength, .. } = self.attraction else {
+            return Vec::new();
+        };
         let nucleate = nucleation == Nucleation::Allowed;
         let touching = self.map(state, |bonding, gap| match bonding {
             Bonding::Free => u8::from(nucleate && gap <= nucleation_gap),
@@ -188,7 +200,9 @@ impl Problem {
         });
         let mut torn = Vec::new();
         if nucleate && strength.is_finite() {
-            let tears = |k: &usize| state.bonds[*k] == Bonding::Sealed && self.law.sealed(self.gap(state, *k)).tension > strength;
+            let tears = |k: &usize| {
+                state.bonds[*k] == Bonding::Sealed && self.law.sealed(self.gap(state, *k)).tension > strength
+            };
             torn.par_extend((0..touching.len()).into_par_iter().with_min_len(grain(1)).filter(tears));
         }
         let spread = self.spread_bonds(&mut state.bonds, &touching, &mut vec![true; self.half_space.rows()]);
@@ -205,14 +219,23 @@ impl Problem {
     /// Bonds the free points within the margin of touching points and opens the sealed ones within the margin
     /// of an open point, in the rows around `stale` rows, which are then up to date. Returns the points whose
     /// bond has changed, with the bond before.
-    pub(super) fn spread_bonds(&self, bonds: &mut [Bonding], touching: &[u8], stale: &mut [bool]) -> Vec<(usize, Bonding)> {
+    pub(super) fn spread_bonds(
+        &self,
+        bonds: &mut [Bonding],
+        touching: &[u8],
+        stale: &mut [bool],
+    ) -> Vec<(usize, Bonding)> {
         let Attraction::Bonded { margin, .. } = self.attraction else { return Vec::new() };
         if !stale.contains(&true) {
             return Vec::new();
         }
         let columns = self.half_space.columns();
         let near_stale = |row: usize| self.rows_around(row, margin).any(|row| stale[row]);
-        let rows = bonds.par_chunks_mut(columns).enumerate().with_min_len(grain(columns)).filter(|(row, _)| near_stale(*row));
+        let rows = bonds
+            .par_chunks_mut(columns)
+            .enumerate()
+            .with_min_len(grain(columns))
+            .filter(|(row, _)| near_stale(*row));
         let changed: Vec<Vec<(usize, Bonding)>> = rows
             .map(|(row, bonds)| {
                 let (near, edge) = self.surroundings_in(row, touching, margin);
@@ -234,28 +257,38 @@ impl Problem {
         changed.concat()
     }
 
-    /// Ends the bonds of points that have separated, beyond the end of the law and of the margin, and seals those inside contacts at which the law is
-    /// its spring. Neither changes the energy; with Morse's law, by less than 1e-6 Δγ per point. Full contact opens at its point of the largest tension, which
-    /// is not sealed if the strength is finite.
+    /// Ends the bonds of points that have separated, beyond the end of the law and of the margin, and seals
+    /// those inside contacts at which the law is its spring. Neither changes the energy; with Morse's law, by
+    /// less than 1e-6 Δγ per point. Full contact opens at its point of the largest tension, which is not
+    /// sealed if the strength is finite.
     pub fn settle_bonds(&self, state: &mut State) {
         let Attraction::Bonded { margin, strength, .. } = self.attraction else { return };
         let touching = self.map(state, |bonding, gap| u8::from(self.touches(bonding, gap)));
         let (end, spring) = (self.law.end_gap(), self.law.spring_gap());
-        let nucleus = if strength.is_finite() && !touching.contains(&0) { self.widest_gap(state) } else { None };
+        let nucleus =
+            if strength.is_finite() && !touching.contains(&0) { self.widest_gap(state) } else { None };
         let columns = self.half_space.columns();
         let mean_penetration = state.mean_penetration;
-        let rows = (state.bonds.par_chunks_mut(columns), state.displacement.par_chunks(columns), self.heights.par_chunks(columns));
-        rows.into_par_iter().enumerate().with_min_len(grain(columns)).for_each(|(row, (bonds, displacement, heights))| {
-            let (near, edge) = self.surroundings_in(row, &touching, margin);
-            for (k, bonding) in bonds.iter_mut().enumerate() {
-                let gap = displacement[k] - mean_penetration - heights[k];
-                match *bonding {
-                    Bonding::Bonded if near[k] == 0 && gap >= end => *bonding = Bonding::Free,
-                    Bonding::Bonded if strength > 0.0 && edge[k] == 0 && gap <= spring => *bonding = Bonding::Sealed,
-                    _ => {}
+        let rows = (
+            state.bonds.par_chunks_mut(columns),
+            state.displacement.par_chunks(columns),
+            self.heights.par_chunks(columns),
+        );
+        rows.into_par_iter().enumerate().with_min_len(grain(columns)).for_each(
+            |(row, (bonds, displacement, heights))| {
+                let (near, edge) = self.surroundings_in(row, &touching, margin);
+                for (k, bonding) in bonds.iter_mut().enumerate() {
+                    let gap = displacement[k] - mean_penetration - heights[k];
+                    match *bonding {
+                        Bonding::Bonded if near[k] == 0 && gap >= end => *bonding = Bonding::Free,
+                        Bonding::Bonded if strength > 0.0 && edge[k] == 0 && gap <= spring => {
+                            *bonding = Bonding::Sealed;
+                        }
+                        _ => {}
+                    }
                 }
-            }
-        });
+            },
+        );
         if let Some(point) = nucleus {
             state.bonds[point] = Bonding::Bonded;
         }
@@ -267,7 +300,11 @@ impl Problem {
     }
 
     fn map(&self, state: &State, value: impl Fn(Bonding, f64) -> u8 + Sync) -> Vec<u8> {
-        (0..self.half_space.points()).into_par_iter().with_min_len(grain(1)).map(|k| value(state.bonds[k], self.gap(state, k))).collect()
+        (0..self.half_space.points())
+            .into_par_iter()
+            .with_min_len(grain(1))
+            .map(|k| value(state.bonds[k], self.gap(state, k)))
+            .collect()
     }
 
     /// Rows within the margin of a row: across the edges of a periodic grid, and not of a patch.
@@ -275,15 +312,20 @@ impl Problem {
         let (rows, periodic) = (self.half_space.rows(), !self.half_space.is_patch());
         let margin = margin.min(rows / 2);
         let first = row + rows - margin;
-        (first..=first + 2 * margin).filter(move |row| periodic || (rows..2 * rows).contains(row)).map(move |row| row % rows)
+        (first..=first + 2 * margin)
+            .filter(move |row| periodic || (rows..2 * rows).contains(row))
+            .map(move |row| row % rows)
     }
 
-    /// Points of a row within a square of half side `margin` around a touching point, and those around an open one.
+    /// Points of a row within a square of half side `margin` around a touching point, and those around an
+    /// open one.
     fn surroundings_in(&self, row: usize, touching: &[u8], margin: usize) -> (Vec<u8>, Vec<u8>) {
         let columns = self.half_space.columns();
         let (mut near, mut edge) = (vec![0; columns], vec![0; columns]);
         for row in self.rows_around(row, margin) {
-            for ((near, edge), touches) in near.iter_mut().zip(&mut edge).zip(&touching[row * columns..][..columns]) {
+            for ((near, edge), touches) in
+                near.iter_mut().zip(&mut edge).zip(&touching[row * columns..][..columns])
+            {
                 *near |= touches;
                 *edge |= 1 - touches;
             }

@@ -4,7 +4,9 @@ use super::Units;
 use super::events::regions::Region;
 use super::path::records::{self, Turning};
 use super::problem::Totals as GridTotals;
-use crate::cycle::{Branch, Contact, Cycle, Effort, Event, Map, RegionShape, Site, Step, StepCounts, StepNumerics, Totals};
+use crate::cycle::{
+    Branch, Contact, Cycle, Effort, Event, Map, RegionShape, Site, Step, StepCounts, StepNumerics, Totals,
+};
 use crate::event_kind::EventCounts;
 use std::f64::consts::PI;
 
@@ -15,16 +17,24 @@ pub(super) fn in_si(cycle: records::Cycle, max_loads: &[f64], units: &Units) -> 
         counts[event.step].extend([event.kind.kind()]);
     }
     let steps = (0..cycle.steps.len()).map(|at| step(&cycle, at, counts[at], max_loads, units)).collect();
-    let events = cycle.events.iter().enumerate().map(|(number, of)| event(&cycle, number, of, units)).collect();
-    let mut contacts: Vec<Contact> = cycle.regions.iter().map(|(step, region)| contact(*step, region, units)).collect();
-    // Regions at the maximum tensile load are found when the branch ends: stable, so that those of a step keep their order.
+    let events =
+        cycle.events.iter().enumerate().map(|(number, of)| event(&cycle, number, of, units)).collect();
+    let mut contacts: Vec<Contact> =
+        cycle.regions.iter().map(|(step, region)| contact(*step, region, units)).collect();
+    // Regions at the maximum tensile load are found when the branch ends: stable, so that those of a step
+    // keep their order.
     contacts.sort_by_key(|contact| contact.step);
     // A further step may be at the maximum tensile load as well.
-    let further = cycle.between.iter().filter(|map| cycle.maps.iter().all(|end| end.step != map.step)).map(|of| map(of, true, units));
+    let further = cycle
+        .between
+        .iter()
+        .filter(|map| cycle.maps.iter().all(|end| end.step != map.step))
+        .map(|of| map(of, true, units));
     let mut maps: Vec<Map> = cycle.maps.iter().map(|of| map(of, false, units)).chain(further).collect();
     maps.sort_by_key(|map| map.step);
     let turning = cycle.turning.into_iter().map(|turning| (turning.step, turning)).collect();
-    let unreached = cycle.unreached.into_iter().map(|(reversal, error)| (reversal, units.error(error))).collect();
+    let unreached =
+        cycle.unreached.into_iter().map(|(reversal, error)| (reversal, units.error(error))).collect();
     Cycle { steps, contacts, events, maps, turning, unreached, ..Cycle::default() }
 }
 
@@ -89,8 +99,14 @@ fn contact(step: usize, of: &Region, units: &Units) -> Contact {
 fn map(of: &records::Map, is_further: bool, units: &Units) -> Map {
     let of_the_surface = |field: &[f32], unit: f64| -> Vec<f32> {
         let [all, own] = [units.points, units.own_points()].map(|points| points.div_ceil(of.stride));
-        field.chunks(all).take(own).flat_map(|row| &row[..own]).map(|value| (f64::from(*value) * unit) as f32).collect()
+        field
+            .chunks(all)
+            .take(own)
+            .flat_map(|row| &row[..own])
+            .map(|value| (f64::from(*value) * unit) as f32)
+            .collect()
     };
-    let (gap_m, pressure_pa) = (of_the_surface(&of.gap, units.spacing_m()), of_the_surface(&of.pressure, units.modulus_pa));
+    let (gap_m, pressure_pa) =
+        (of_the_surface(&of.gap, units.spacing_m()), of_the_surface(&of.pressure, units.modulus_pa));
     Map { step: of.step, stride: of.stride, is_further, gap_m, pressure_pa }
 }

@@ -13,7 +13,8 @@ pub struct Units {
     pub modulus_pa: f64,
     /// Rms height \[m\].
     pub rms_height_m: f64,
-    /// True if the square is a surface with its three mirror images. Loads, areas and energies are then those of the surface: a quarter.
+    /// True if the square is a surface with its three mirror images. Loads, areas and energies are then those
+    /// of the surface: a quarter.
     pub is_mirrored: bool,
     /// Place of the first grid point along x and y, from the first point of the surface \[m\].
     pub first_m: f64,
@@ -73,7 +74,8 @@ impl Units {
         (self.points * self.points) as f64
     }
 
-    /// An error of the solver with its lengths, loads and energies as those of the surface: in SI units, loads over E\* A0.
+    /// An error of the solver with its lengths, loads and energies as those of the surface: in SI units,
+    /// loads over E\* A0.
     #[must_use]
     pub(super) fn error(&self, error: LoopError) -> LoopError {
         let spacing = self.spacing_m();
@@ -83,10 +85,15 @@ impl Units {
                 reached: reached / self.all(),
                 mean_penetration_m: mean_penetration_m * spacing,
             },
-            LoopError::Closed { mean_penetration_m } => LoopError::Closed { mean_penetration_m: mean_penetration_m * spacing },
-            LoopError::Inseparable { mean_penetration_m } => LoopError::Inseparable { mean_penetration_m: mean_penetration_m * spacing },
+            LoopError::Closed { mean_penetration_m } => {
+                LoopError::Closed { mean_penetration_m: mean_penetration_m * spacing }
+            }
+            LoopError::Inseparable { mean_penetration_m } => {
+                LoopError::Inseparable { mean_penetration_m: mean_penetration_m * spacing }
+            }
             LoopError::UnresolvedLoop { max_load, loss_j, events_j, work_j } => {
-                let [loss_j, events_j, work_j] = [loss_j, events_j, work_j].map(|energy| energy * self.energy_j());
+                let [loss_j, events_j, work_j] =
+                    [loss_j, events_j, work_j].map(|energy| energy * self.energy_j());
                 LoopError::UnresolvedLoop { max_load: max_load / self.all(), loss_j, events_j, work_j }
             }
             other => other,

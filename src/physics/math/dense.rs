@@ -15,8 +15,8 @@ pub(crate) struct Lu {
 }
 
 impl Lu {
-    /// Factors the square matrix `matrix`. A pivot that vanishes is replaced by rounding of the largest entry, so that a solve with a
-    /// singular matrix gives its null vector, greatly enlarged.
+    /// Factors the square matrix `matrix`. A pivot that vanishes is replaced by rounding of the largest
+    /// entry, so that a solve with a singular matrix gives its null vector, greatly enlarged.
     pub(crate) fn factor(&mut self, matrix: &[f64], size: usize) {
         self.size = size;
         self.factors.clear();
@@ -178,7 +178,8 @@ mod tests {
         for n in [1, 2, 7, 24, 45] {
             let matrix = values(n * n);
             let x = values(n + 3)[3..].to_vec();
-            let b: Vec<f64> = matrix.chunks(n).map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
+            let b: Vec<f64> =
+                matrix.chunks(n).map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
             let mut lu = Lu::default();
             lu.factor(&matrix, n);
             let mut found = b.clone();
@@ -188,14 +189,21 @@ mod tests {
             // Two right sides at once: the second twice the first.
             let mut both: Vec<f64> = b.iter().flat_map(|b| [*b, 2.0 * b]).collect();
             lu.solve_all(&mut both, 2);
-            assert!(both.chunks(2).zip(&x).all(|(f, x)| (f[0] - x).abs() < 1e-11 && (f[1] - 2.0 * x).abs() < 2e-11), "{n}");
+            assert!(
+                both.chunks(2)
+                    .zip(&x)
+                    .all(|(f, x)| (f[0] - x).abs() < 1e-11 && (f[1] - 2.0 * x).abs() < 2e-11),
+                "{n}"
+            );
         }
     }
 
     #[test]
     fn law_the_sign_is_that_of_the_determinant() {
         let mut lu = Lu::default();
-        for (matrix, sign) in [([2.0, 1.0, 1.0, 3.0], 1.0), ([1.0, 3.0, 2.0, 1.0], -1.0), ([0.0, 1.0, 1.0, 0.0], -1.0)] {
+        for (matrix, sign) in
+            [([2.0, 1.0, 1.0, 3.0], 1.0), ([1.0, 3.0, 2.0, 1.0], -1.0), ([0.0, 1.0, 1.0, 0.0], -1.0)]
+        {
             lu.factor(&matrix, 2);
             assert_eq!(lu.sign(), sign, "{matrix:?}");
         }

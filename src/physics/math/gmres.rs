@@ -1,7 +1,8 @@
 //! GMRES for the linear systems of an equilibrium.
 //!
-//! Saad & Schultz, SIAM J. Sci. Stat. Comput. 7:856 (1986), right-preconditioned, modified Gram–Schmidt, without restart: the tangent of a contact is
-//! a diagonal and a long-range coupling of low rank, and ten products are enough; half as many with a preconditioner.
+//! Saad & Schultz, SIAM J. Sci. Stat. Comput. 7:856 (1986), right-preconditioned, modified Gram–Schmidt,
+//! without restart: the tangent of a contact is a diagonal and a long-range coupling of low rank, and ten
+//! products are enough; half as many with a preconditioner.
 
 use super::dense::Lu;
 use super::vector::dot;
@@ -40,7 +41,12 @@ pub(crate) struct Limits {
 }
 
 /// Solves `A x = rhs` within the limits.
-pub(crate) fn gmres(matrix: &impl LinearOperator, inverse: Option<&dyn Preconditioner>, rhs: &[f64], limits: Limits) -> Solution {
+pub(crate) fn gmres(
+    matrix: &impl LinearOperator,
+    inverse: Option<&dyn Preconditioner>,
+    rhs: &[f64],
+    limits: Limits,
+) -> Solution {
     solve(matrix, inverse, rhs, limits, None)
 }
 
@@ -57,8 +63,8 @@ pub(crate) fn gmres_and_least(
     (solution, projection.least_eigenvalue())
 }
 
-/// Projection of the matrix `A` on the Krylov space, by columns: `VᵀAW` down to its subdiagonal element and `VᵀDW`, with the orthonormal basis V, the
-/// preconditioned basis W and the diagonal D.
+/// Projection of the matrix `A` on the Krylov space, by columns: `VᵀAW` down to its subdiagonal element and
+/// `VᵀDW`, with the orthonormal basis V, the preconditioned basis W and the diagonal D.
 #[derive(Debug, Default)]
 struct Projection {
     matrix: Vec<Vec<f64>>,
@@ -152,7 +158,8 @@ impl Triangular {
     }
 }
 
-/// Orthogonalises a vector against a basis by the modified Gram–Schmidt method; its components and its remaining length are returned.
+/// Orthogonalises a vector against a basis by the modified Gram–Schmidt method; its components and its
+/// remaining length are returned.
 fn orthogonalise(w: &mut [f64], basis: &[Vec<f64>]) -> Vec<f64> {
     let mut column = Vec::with_capacity(basis.len() + 1);
     for v in basis {
@@ -203,7 +210,10 @@ fn solve(
         basis.push(w.iter().map(|wi| wi / length).collect());
     }
     if let Some(seen) = seen {
-        seen.diagonal = answers.iter().map(|answer| basis.iter().take(answers.len()).map(|v| dot(v, answer)).collect()).collect();
+        seen.diagonal = answers
+            .iter()
+            .map(|answer| basis.iter().take(answers.len()).map(|v| dot(v, answer)).collect())
+            .collect();
     }
     for (v, yk) in basis.iter().zip(triangular.solve()) {
         for (xi, vi) in x.iter_mut().zip(v) {
@@ -259,7 +269,13 @@ mod tests {
 
     /// A diagonal and a coupling of rank one: `D + c 1 1ᵀ`.
     fn coupled(n: usize, coupling: f64) -> Rows {
-        Rows((0..n).map(|i| (0..n).map(|j| coupling + if i == j { 1.0 + i as f64 / n as f64 } else { 0.0 }).collect()).collect())
+        Rows(
+            (0..n)
+                .map(|i| {
+                    (0..n).map(|j| coupling + if i == j { 1.0 + i as f64 / n as f64 } else { 0.0 }).collect()
+                })
+                .collect(),
+        )
     }
 
     #[test]
@@ -295,7 +311,8 @@ mod tests {
         for share in [0.3, 0.9, 1.0 - 1e-9, 1.2] {
             let element = |i: usize, j: usize| if i == j { d[i] } else { 0.0 } - share * d[i] * d[j] / sum;
             let matrix = Rows((0..n).map(|i| (0..n).map(|j| element(i, j)).collect()).collect());
-            // Each column over its diagonal element, as in the definition; elements of the coupling are below a tenth of it.
+            // Each column over its diagonal element, as in the definition; elements of the coupling are below
+            // a tenth of it.
             let rhs: Vec<f64> = (0..n).map(|i| 1.0 + 0.1 * i as f64).collect();
             let (_, least) = gmres_and_least(&matrix, None, &rhs, Limits { tolerance: 1e-10, products: n });
             assert_eq!(least > 0.0, share < 1.0, "{share}: {least}");

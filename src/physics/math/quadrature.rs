@@ -40,7 +40,8 @@ mod tests {
 
     #[test]
     fn law_the_cubic_is_reproduced() {
-        let (f, slope) = (|x: f64| 1.0 + x * (2.0 + x * (-3.0 + 4.0 * x)), |x: f64| 2.0 + x * (-6.0 + 12.0 * x));
+        let (f, slope) =
+            (|x: f64| 1.0 + x * (2.0 + x * (-3.0 + 4.0 * x)), |x: f64| 2.0 + x * (-6.0 + 12.0 * x));
         for x in [0.0, 0.3, 0.9, 1.0] {
             assert!((hermite(x, f(0.0), f(1.0), slope(0.0), slope(1.0)) - f(x)).abs() < 1e-14);
             assert!((hermite_slope(x, f(0.0), f(1.0), slope(0.0), slope(1.0)) - slope(x)).abs() < 1e-14);

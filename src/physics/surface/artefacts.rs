@@ -39,7 +39,8 @@ pub struct Artefacts {
     pub jump_axis: FastAxis,
 }
 
-/// Corrects heights \[m\], and counts what remains. Heights that are not finite are missing and remain missing.
+/// Corrects heights \[m\], and counts what remains. Heights that are not finite are missing and remain
+/// missing.
 pub fn correct(heights_m: &mut Array2<f64>, corrections: &Corrections) -> Artefacts {
     let aligned = corrections.align.map(|axis| align(heights_m, axis));
     let edges = Edges::of(corrections.periodic);
@@ -64,34 +65,43 @@ pub fn correct(heights_m: &mut Array2<f64>, corrections: &Corrections) -> Artefa
     }
 }
 
-/// Limits of the effect of an outlier: its height after the S-filter over h_rms, its curvature after the S-filter over the rms mean curvature, and the rms
-/// height of all outliers over h_rms.
+/// Limits of the effect of an outlier: its height after the S-filter over h_rms, its curvature after the
+/// S-filter over the rms mean curvature, and the rms height of all outliers over h_rms.
 const EFFECTS: [f64; 3] = [0.1, 1.0, 0.03];
 
 /// Largest effect of the remaining outliers on the filtered surface, over its limit.
 ///
-/// A low-pass of cut-off `points` leaves an isolated point the height π/points², and the curvature of its shortest wavelength.
+/// A low-pass of cut-off `points` leaves an isolated point the height π/points², and the curvature of its
+/// shortest wavelength.
 #[must_use]
 pub fn outlier_effect(artefacts: &Artefacts, moments: &Moments, points: f64, shortest_m: f64) -> f64 {
     let height = artefacts.outlier_left_m * PI / (points * points);
     let rms_height = moments.rms_height_m();
     let curvature = height * (TAU / shortest_m).powi(2);
-    let of_limit = [height / rms_height, curvature / (0.5 * moments.rms_curvature_1_m()), artefacts.outlier_left_rms_m / rms_height];
+    let of_limit = [
+        height / rms_height,
+        curvature / (0.5 * moments.rms_curvature_1_m()),
+        artefacts.outlier_left_rms_m / rms_height,
+    ];
     of_limit.into_iter().zip(EFFECTS).map(|(effect, limit)| effect / limit).fold(0.0, f64::max)
 }
 
-/// Exponent p of the spectral density `C ∝ q^p` of the wavelengths up to `shortest_m` \[m\], which the S-filter removes; nothing with fewer than three rings.
+/// Exponent p of the spectral density `C ∝ q^p` of the wavelengths up to `shortest_m` \[m\], which the
+/// S-filter removes; nothing with fewer than three rings.
 ///
 /// It is -2(H+1), below -2, for a self-affine surface, and 0 for independent errors of the points.
 #[must_use]
 pub fn noise_exponent(rings: &[Ring], shortest_m: f64) -> Option<f64> {
-    let removed = rings.iter().filter(|ring| ring.wavenumber_1_m * shortest_m >= TAU && ring.density_m4 > 0.0);
-    let points: Vec<[f64; 3]> = removed.map(|r| [r.wavenumber_1_m.ln(), r.density_m4.ln(), r.mode_count as f64]).collect();
+    let removed =
+        rings.iter().filter(|ring| ring.wavenumber_1_m * shortest_m >= TAU && ring.density_m4 > 0.0);
+    let points: Vec<[f64; 3]> =
+        removed.map(|r| [r.wavenumber_1_m.ln(), r.density_m4.ln(), r.mode_count as f64]).collect();
     if points.len() < 3 {
         return None;
     }
     let whole: f64 = points.iter().map(|[_, _, weight]| weight).sum();
-    let mean = |of: &dyn Fn(&[f64; 3]) -> f64| points.iter().map(|point| point[2] * of(point)).sum::<f64>() / whole;
+    let mean =
+        |of: &dyn Fn(&[f64; 3]) -> f64| points.iter().map(|point| point[2] * of(point)).sum::<f64>() / whole;
     let (x, y) = (mean(&|point| point[0]), mean(&|point| point[1]));
     let exponent = mean(&|point| (point[0] - x) * (point[1] - y)) / mean(&|point| (point[0] - x).powi(2));
     exponent.is_finite().then_some(exponent)

@@ -1,11 +1,10 @@
 //! Interpolation of heights and derivatives of a band-limited periodic surface.
 //!
-//! A surface of Eq 10 has no mode at or above `q1`, so a grid with more than two points per shortest wavelength determines it.
-//! Any value between the points is a sum over the grid with the cardinal sine.
-//! A Kaiser–Bessel window of half width `m` points makes the sum local.
-//! With `p` points per shortest wavelength its relative error is about `exp(−πm(1 − 2/p))`.
-//! `m` is chosen so that this is below the rounding error of the heights.
-//! Derivatives are those of this sum, with spectral accuracy and without a transform.
+//! A surface of Eq 10 has no mode at or above
+//! `q1`, so a grid with more than two points per shortest wavelength determines it. Any value between the points is a sum over the grid with the cardinal sine. A Kaiser–Bessel window of half width `m`
+//! points makes the sum local. With `p` points per shortest wavelength its relative error is about `exp(−πm(1
+//! − 2/p))`. `m` is chosen so that this is below the rounding error of the heights. Derivatives are those of
+//! this sum, with spectral accuracy and without a transform.
 
 use multiversion::multiversion;
 use ndarray::ArrayView2;
@@ -71,7 +70,8 @@ struct Window {
 impl<'a> BandLimited<'a> {
     /// Heights \[m\] on a square grid of side `length_m` with `points_per_shortest_wavelength > 2`.
     ///
-    /// Down to 2.5 points the error is below rounding. Closer to 2 it grows, since the sum has at most [`MAX_TAPS`] points.
+    /// Down to 2.5 points the error is below rounding. Closer to 2 it grows, since the sum has at most
+    /// [`MAX_TAPS`] points.
     #[must_use]
     pub fn new(heights: ArrayView2<'a, f64>, length_m: f64, points_per_shortest_wavelength: f64) -> Self {
         let window = Window::new(points_per_shortest_wavelength);
@@ -83,7 +83,8 @@ impl<'a> BandLimited<'a> {
         Window::new(points_per_shortest_wavelength).half_width as usize
     }
 
-    /// Weights of the points around a grid point in its first and second derivative along a line, for a spacing of 1.
+    /// Weights of the points around a grid point in its first and second derivative along a line, for a
+    /// spacing of 1.
     pub(super) fn stencils(points_per_shortest_wavelength: f64) -> [Vec<f64>; 2] {
         let window = Window::new(points_per_shortest_wavelength);
         let reach = window.half_width as i32;
@@ -114,7 +115,9 @@ impl<'a> BandLimited<'a> {
             }
         }
         let [scale, twice] = [1.0 / self.spacing, 1.0 / (self.spacing * self.spacing)];
-        let of = |down: usize, right: usize| sums[down][..count].iter().zip(&along.0[right]).map(|(s, w)| s * w).sum::<f64>();
+        let of = |down: usize, right: usize| {
+            sums[down][..count].iter().zip(&along.0[right]).map(|(s, w)| s * w).sum::<f64>()
+        };
         Jet {
             height_m: of(0, 0),
             gradient: [scale * of(1, 0), scale * of(0, 1)],
@@ -203,7 +206,12 @@ fn interpolate(f: impl Fn(f64) -> f64) -> [f64; TERMS] {
     now[0] = 1.0;
     for order in 0..TERMS {
         let weight = if order == 0 { 1.0 } else { 2.0 } / TERMS as f64;
-        let share = weight * samples.iter().enumerate().map(|(k, sample)| sample * (order as f64 * angle(k)).cos()).sum::<f64>();
+        let share = weight
+            * samples
+                .iter()
+                .enumerate()
+                .map(|(k, sample)| sample * (order as f64 * angle(k)).cos())
+                .sum::<f64>();
         for (s, c) in sum.iter_mut().zip(&now) {
             *s += share * c;
         }
@@ -241,7 +249,11 @@ impl Window {
         let w1 = -rate * t * bessel_i(z, 1);
         let w2 = -rate * bessel_i(z, 1) + (rate * t).powi(2) * bessel_i(z, 2);
         let [s0, s1, s2] = cardinal_sine(t);
-        [self.norm * s0 * w0, self.norm * (s1 * w0 + s0 * w1), self.norm * (s2 * w0 + 2.0 * s1 * w1 + s0 * w2)]
+        [
+            self.norm * s0 * w0,
+            self.norm * (s1 * w0 + s0 * w1),
+            self.norm * (s2 * w0 + 2.0 * s1 * w1 + s0 * w2),
+        ]
     }
 }
 

@@ -1,7 +1,9 @@
 //! Limits of measured surfaces.
 
 use super::continuation::MIN_MARGIN;
-use super::measured::{MAX_MISSING_FRACTION, MAX_POINTS, MAX_SPACING_RATIO, MIN_CURVATURE_SHARE, MIN_POINTS, SPACING_TOLERANCE};
+use super::measured::{
+    MAX_MISSING_FRACTION, MAX_POINTS, MAX_SPACING_RATIO, MIN_CURVATURE_SHARE, MIN_POINTS, SPACING_TOLERANCE,
+};
 use super::measured_summits::{RIDGE, ROUNDING_OF_RIPPLES};
 use super::outliers::{CONTRAST, LARGEST_GROUP, OUTLIER_LIMIT};
 use super::rows::{COMMON, PERIODIC};
@@ -10,8 +12,20 @@ use crate::constants::Constant;
 
 /// Limits of a measured surface.
 pub(crate) const CONSTANTS: &[Constant] = &[
-    Constant::new("points along a side", &[MIN_POINTS as f64, MAX_POINTS as f64], "", "Minimum and maximum, after the crop.", "measured"),
-    Constant::new("missing points", &[MAX_MISSING_FRACTION], "of all points", "Maximum that `--fill` interpolates.", "measured"),
+    Constant::new(
+        "points along a side",
+        &[MIN_POINTS as f64, MAX_POINTS as f64],
+        "",
+        "Minimum and maximum, after the crop.",
+        "measured",
+    ),
+    Constant::new(
+        "missing points",
+        &[MAX_MISSING_FRACTION],
+        "of all points",
+        "Maximum that `--fill` interpolates.",
+        "measured",
+    ),
     Constant::new(
         "difference of the pixel sizes",
         &[SPACING_TOLERANCE],
@@ -19,7 +33,13 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "Smaller ones along x and y count as equal.",
         "measured",
     ),
-    Constant::new("ratio of the pixel sizes", &[MAX_SPACING_RATIO], "", "A larger one is an error.", "measured"),
+    Constant::new(
+        "ratio of the pixel sizes",
+        &[MAX_SPACING_RATIO],
+        "",
+        "A larger one is an error.",
+        "measured",
+    ),
     Constant::new(
         "outlier",
         &[OUTLIER_LIMIT],
@@ -27,7 +47,13 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "Deviation from the median of the neighbours beyond which a point may be an outlier.",
         "outliers",
     ),
-    Constant::new("points of an outlier", &[LARGEST_GROUP as f64], "", "Maximum that are connected at half of its height.", "outliers"),
+    Constant::new(
+        "points of an outlier",
+        &[LARGEST_GROUP as f64],
+        "",
+        "Maximum that are connected at half of its height.",
+        "outliers",
+    ),
     Constant::new(
         "contrast of an outlier",
         &[CONTRAST],
@@ -42,7 +68,13 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "Minimum that all parts of a scan line have in common.",
         "rows",
     ),
-    Constant::new("correlation of line offsets", &[PERIODIC], "", "A larger one is that of a periodic surface.", "rows"),
+    Constant::new(
+        "correlation of line offsets",
+        &[PERIODIC],
+        "",
+        "A larger one is that of a periodic surface.",
+        "rows",
+    ),
     Constant::new(
         "rings of a spectrum fit",
         &[MIN_RINGS as f64, MIN_RINGS_BEYOND as f64],

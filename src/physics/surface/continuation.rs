@@ -1,7 +1,8 @@
 //! Continuation of a field that is not periodic, and its derivatives.
 //!
-//! The field is continued by point reflection at its edges: `h(−x) = 2 h(0) − h(x)`.
-//! Heights and slopes are then continuous. Mirror images `h(−x) = h(x)` have a kink at the edges, which rings in the second derivatives.
+//! The field is continued by point reflection at its edges: `h(−x) = 2 h(0) − h(x)`. Heights and slopes are
+//! then continuous. Mirror images `h(−x) = h(x)` have a kink at the edges, which rings in the second
+//! derivatives.
 
 use super::band_limited::BandLimited;
 use super::spectrum::Moments;
@@ -13,7 +14,8 @@ use rayon::prelude::*;
 /// Minimum distance from the edges, in points, where derivatives and asperities are taken.
 pub(super) const MIN_MARGIN: usize = 4;
 
-/// Points along each edge whose derivatives and asperities are excluded: half a cut-off wavelength, at least four points.
+/// Points along each edge whose derivatives and asperities are excluded: half a cut-off wavelength, at least
+/// four points.
 ///
 /// The heights there depend on the rule for the edges.
 pub(super) fn margin(points_per_shortest_wavelength: f64) -> usize {
@@ -26,20 +28,26 @@ pub(super) fn margin(points_per_shortest_wavelength: f64) -> usize {
 /// Too little memory.
 pub(super) fn continued(heights: ArrayView2<'_, f64>, width: usize) -> Result<Array2<f64>, PhysicsError> {
     let n = heights.nrows();
-    let sources: Vec<[(usize, f64); 3]> = (0..n + 2 * width).map(|k| source(k as i64 - width as i64, n)).collect();
+    let sources: Vec<[(usize, f64); 3]> =
+        (0..n + 2 * width).map(|k| source(k as i64 - width as i64, n)).collect();
     let mut whole = zeros((n + 2 * width, n + 2 * width))?;
     whole.indexed_iter_mut().for_each(|((i, j), h)| {
         let [rows, columns] = [&sources[i], &sources[j]];
         *h = if let ([(row, _), (_, 0.0), _], [(column, _), (_, 0.0), _]) = (rows, columns) {
             heights[[*row, *column]]
         } else {
-            rows.iter().map(|(row, a)| columns.iter().map(|(column, b)| a * b * heights[[*row, *column]]).sum::<f64>()).sum()
+            rows.iter()
+                .map(|(row, a)| {
+                    columns.iter().map(|(column, b)| a * b * heights[[*row, *column]]).sum::<f64>()
+                })
+                .sum()
         };
     });
     Ok(whole)
 }
 
-/// Points of a line of `n` points, with weights, whose sum is the continued height at point `k`. The second weight is 0 inside the line only.
+/// Points of a line of `n` points, with weights, whose sum is the continued height at point `k`. The second
+/// weight is 0 inside the line only.
 fn source(mut k: i64, n: usize) -> [(usize, f64); 3] {
     let last = n as i64 - 1;
     let (mut sign, mut first, mut end) = (1.0, 0.0, 0.0);
@@ -62,11 +70,16 @@ fn source(mut k: i64, n: usize) -> [(usize, f64); 3] {
 
 /// Moments of a square field that is not periodic, with a spacing in \[m\] and a mean of 0.
 ///
-/// `m0 = ⟨h²⟩` is the mean over the square. `m2 = ½⟨|∇h|²⟩` and `m4 = ⅜⟨(∇²h)²⟩` are means over the points farther than [`margin`] from its edges.
+/// `m0 = ⟨h²⟩` is the mean over the square. `m2 = ½⟨|∇h|²⟩` and `m4 = ⅜⟨(∇²h)²⟩` are means over the points
+/// farther than [`margin`] from its edges.
 ///
 /// # Errors
 /// Too little memory.
-pub(super) fn moments(heights: ArrayView2<'_, f64>, spacing_m: f64, points: f64) -> Result<Moments, PhysicsError> {
+pub(super) fn moments(
+    heights: ArrayView2<'_, f64>,
+    spacing_m: f64,
+    points: f64,
+) -> Result<Moments, PhysicsError> {
     let n = heights.nrows();
     let [slope, second] = BandLimited::stencils(points);
     let whole = continued(heights, slope.len() / 2)?;

@@ -10,7 +10,8 @@ pub struct HeightMap<'a> {
     pub heights_m: ArrayView2<'a, f64>,
     /// Side \[m\].
     pub length_m: f64,
-    /// True if the surface is one period. Otherwise it is continued by its mirror images, and loads, areas and energies are those of the surface.
+    /// True if the surface is one period. Otherwise it is continued by its mirror images, and loads, areas
+    /// and energies are those of the surface.
     pub is_periodic: bool,
     /// Shortest wavelength \[m\].
     pub shortest_wavelength_m: f64,

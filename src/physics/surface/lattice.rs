@@ -1,12 +1,13 @@
 //! Sums of powers over the modes of a periodic square, `Σ (kx² + ky²)^(−s)` with `1 ≤ kx² + ky² < ζ²`.
 //!
-//! Modes with `max(|kx|, |ky|)` below [`DIRECT`] are added one by one. Those with `max(|kx|, |ky|) = a` beyond it form four
-//! equal rows, and each row is a sum over b of `f(b) = (a² + b²)^(−s)` that the Euler–Maclaurin formula replaces by an integral
-//! and derivatives at the last mode. The number of operations is proportional to ζ, not to ζ².
+//! Modes with `max(|kx|, |ky|)` below [`DIRECT`] are added one by one. Those with `max(|kx|, |ky|) =
+//! a` beyond it form four equal rows, and each row is a sum over b of `f(b) = (a² + b²)^(−s)` that the
+//! Euler–Maclaurin formula replaces by an integral and derivatives at the last mode. The number of operations
+//! is proportional to ζ, not to ζ².
 //!
-//! Error: f is analytic within a distance a of the real axis. The first omitted term is below `a⁻⁶` and the exponential remainder
-//! of the formula below `e^(−2πa)`, relative to the row: 2e-13 and 0 at a = 128. The edge of the band is exact: the
-//! last mode of each row follows from integers.
+//! Error: f is analytic within a distance a of the real axis. The first omitted term is below
+//! `a⁻⁶` and the exponential remainder of the formula below `e^(−2πa)`, relative to the row: 2e-13 and 0 at a
+//! = 128. The edge of the band is exact: the last mode of each row follows from integers.
 
 use super::spectrum::{MomentSums, Moments, Spectrum};
 
@@ -34,7 +35,8 @@ struct Row {
 /// Rows below ζ beyond the block of modes that are added one by one.
 fn far_rows(magnification: u32) -> impl Iterator<Item = Row> {
     let edge = u64::from(magnification).pow(2);
-    (u64::from(DIRECT)..u64::from(magnification)).map(move |a| Row { a, last: (edge - 1 - a * a).isqrt().min(a) })
+    (u64::from(DIRECT)..u64::from(magnification))
+        .map(move |a| Row { a, last: (edge - 1 - a * a).isqrt().min(a) })
 }
 
 /// Sums over all modes of the power, `k²` and `k⁴` times the power.
@@ -63,7 +65,8 @@ pub(super) fn sums(of: &Spectrum) -> MomentSums {
     sums
 }
 
-/// The function `φ(t) = (1 + t²)^(−s)` at the end t of a row: its integral from 0, its value, first and third derivative.
+/// The function `φ(t) = (1 + t²)^(−s)` at the end t of a row: its integral from 0, its value, first and third
+/// derivative.
 #[derive(Debug, Clone, Copy)]
 struct Shape {
     integral: f64,
@@ -80,7 +83,11 @@ impl Shape {
         let half = 0.25 * t;
         let panel = |centre: f64| -> f64 {
             let at = |u: f64| (1.0 + u * u).powf(-s);
-            GAUSS.iter().map(|(node, weight)| weight * (at(centre - half * node) + at(centre + half * node))).sum::<f64>() * half
+            GAUSS
+                .iter()
+                .map(|(node, weight)| weight * (at(centre - half * node) + at(centre + half * node)))
+                .sum::<f64>()
+                * half
         };
         let integral = panel(half) + panel(3.0 * half);
         let first = -2.0 * s * t * value / one;
@@ -138,7 +145,10 @@ mod tests {
                 let expected = 4.0 * line - corners;
                 let found = Row { a, last }.sum(s, &Shape::of(s, 1.0));
                 // The first omitted term (2e-13), and rounding of up to 4000 additions.
-                assert!((found / expected - 1.0).abs() < 1e-12, "a = {a}, last = {last}, s = {s}: {found} {expected}");
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-12,
+                    "a = {a}, last = {last}, s = {s}: {found} {expected}"
+                );
             }
         }
     }

@@ -47,7 +47,8 @@ struct Range {
 ///
 /// Refuses constant heights and those whose squares would underflow.
 fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
-    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
+    let (low, high) =
+        heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
     let mean = heights.sum() / heights.len() as f64;
     let deviation = (high - mean).max(mean - low);
     if low < high && deviation < MIN_DEVIATION {
@@ -56,7 +57,11 @@ fn range(heights: &Array2<f64>) -> Result<Range, PhysicsError> {
             help: "check the unit of the heights (--unit, surface.unit)",
         });
     }
-    if low < high { Ok(Range { mean, deviation }) } else { Err(flat(format!("its heights are constant: all are {low:e} m"))) }
+    if low < high {
+        Ok(Range { mean, deviation })
+    } else {
+        Err(flat(format!("its heights are constant: all are {low:e} m")))
+    }
 }
 
 /// Checks that levelled heights exceed rounding.
@@ -65,11 +70,16 @@ fn left_over(heights: &Array2<f64>, before: &Range, trend_m: f64) -> Result<(), 
     if most > ROUNDING * before.deviation + ROUNDING_OF_MEAN * before.mean.abs() {
         return Ok(());
     }
-    Err(flat(format!("it is flat to rounding: nothing is left after levelling, which removed {trend_m:.3e} m rms")))
+    Err(flat(format!(
+        "it is flat to rounding: nothing is left after levelling, which removed {trend_m:.3e} m rms"
+    )))
 }
 
 fn flat(problem: String) -> PhysicsError {
-    PhysicsError::Surface { problem, help: "a rough surface is needed: check which field of the file is read, and its units" }
+    PhysicsError::Surface {
+        problem,
+        help: "a rough surface is needed: check which field of the file is read, and its units",
+    }
 }
 
 /// Subtracts a least-squares form; returns its rms height \[m\] about its mean.
@@ -83,12 +93,18 @@ fn detrend(heights: &mut Array2<f64>, kind: Detrend) -> f64 {
     let mean_square = (0..n).map(|k| at(k).powi(2)).sum::<f64>() / n as f64;
     type Shape<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;
     let plane: [Shape<'_>; 2] = [Box::new(|x, _| x), Box::new(|_, y| y)];
-    let curved: [Shape<'_>; 3] =
-        [Box::new(|x, y| x * y), Box::new(move |x, _| x * x - mean_square), Box::new(move |_, y| y * y - mean_square)];
+    let curved: [Shape<'_>; 3] = [
+        Box::new(|x, y| x * y),
+        Box::new(move |x, _| x * x - mean_square),
+        Box::new(move |_, y| y * y - mean_square),
+    ];
     let mean = heights.sum() / count;
     heights.mapv_inplace(|h| h - mean);
     let mut squares = 0.0;
-    let shapes = plane.iter().filter(|_| kind != Detrend::Mean).chain(curved.iter().filter(|_| kind == Detrend::Quadratic));
+    let shapes = plane
+        .iter()
+        .filter(|_| kind != Detrend::Mean)
+        .chain(curved.iter().filter(|_| kind == Detrend::Quadratic));
     for shape in shapes {
         let (mut product, mut norm) = (0.0, 0.0);
         for ((i, j), h) in heights.indexed_iter() {

@@ -1,12 +1,14 @@
 //! Import of a measured surface: central crop, harmonic in-fill, levelling and S-filter.
 //!
-//! The model requires a smooth field on a square grid, as a generated surface is. A scan has noise down to its points.
-//! Wavelengths shorter than `points_per_shortest_wavelength` points are removed, by a Gaussian filter or by a sharp cut-off on a disc of wavevectors.
-//! The remaining field determines the summits as on a generated surface.
+//! The model requires a smooth field on a square grid, as a generated surface is. A scan has noise down to
+//! its points. Wavelengths shorter than `points_per_shortest_wavelength` points are removed, by a Gaussian
+//! filter or by a sharp cut-off on a disc of wavevectors. The remaining field determines the summits as on a
+//! generated surface.
 //!
-//! A field that does not continue periodically has derivatives of its own ([`super::continuation`]).
-//! For the sharp cut-off it is extended by its mirror images: heights then stay continuous, whereas periodic images would jump.
-//! Summits closer to an edge than half a shortest wavelength are excluded, since heights there depend on the rule for the edges.
+//! A field that does not continue periodically has derivatives of its own ([`super::continuation`]). For the
+//! sharp cut-off it is extended by its mirror images: heights then stay continuous, whereas periodic images
+//! would jump. Summits closer to an edge than half a shortest wavelength are excluded, since heights there
+//! depend on the rule for the edges.
 
 pub use super::measured_summits::find_measured;
 use crate::PhysicsError;
@@ -86,15 +88,18 @@ pub struct Prepared {
 
 /// Prepares heights \[m\] with spacings `spacing_m` along rows and along columns.
 ///
-/// Missing points are NaN.
-/// A field that is not square is cropped to its central square; a periodic one must be square.
-/// With unequal spacings, heights along the coarser direction are interpolated by polynomials of the fifth degree.
-/// The cut-off then refers to the larger spacing.
+/// Missing points are NaN. A field that is not square is cropped to its central square; a periodic one must
+/// be square. With unequal spacings, heights along the coarser direction are interpolated by polynomials of
+/// the fifth degree. The cut-off then refers to the larger spacing.
 ///
 /// # Errors
-/// Too few or too many points; spacings that are not positive or too unequal; constant heights; too little memory.
-/// Too many missing points, or any if they are refused. The message states the allowed values.
-pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatment) -> Result<Prepared, PhysicsError> {
+/// Too few or too many points; spacings that are not positive or too unequal; constant heights; too little
+/// memory. Too many missing points, or any if they are refused. The message states the allowed values.
+pub fn prepare(
+    heights_m: Array2<f64>,
+    spacing_m: [f64; 2],
+    treatment: &Treatment,
+) -> Result<Prepared, PhysicsError> {
     let edges = Edges::of(treatment.periodic);
     let Square { mut heights, fine, coarsening } = square(heights_m, spacing_m, edges)?;
     let side = heights.nrows();
@@ -114,7 +119,8 @@ pub fn prepare(heights_m: Array2<f64>, spacing_m: [f64; 2], treatment: &Treatmen
     let length_m = side as f64 * fine;
     // Levelling breaks the continuation of a periodic field.
     let continued = !treatment.periodic && continues(heights.view());
-    let untapered = if continued { Some(Field::of(heights.view(), length_m, Edges::Periodic)?.rings()) } else { None };
+    let untapered =
+        if continued { Some(Field::of(heights.view(), length_m, Edges::Periodic)?.rings()) } else { None };
     let trend_m = level(&mut heights, treatment.detrend)?;
     let points = treatment.points_per_shortest_wavelength * coarsening;
     let Filtered { heights_m, moments, rings } = filtered(&heights, length_m, points, treatment)?;
@@ -151,7 +157,12 @@ struct Filtered {
 }
 
 /// Applies the S-filter with a cut-off of `points` points to levelled heights \[m\] on a square.
-fn filtered(heights: &Array2<f64>, length_m: f64, points: f64, treatment: &Treatment) -> Result<Filtered, PhysicsError> {
+fn filtered(
+    heights: &Array2<f64>,
+    length_m: f64,
+    points: f64,
+    treatment: &Treatment,
+) -> Result<Filtered, PhysicsError> {
     let side = heights.nrows();
     if treatment.periodic {
         let mut field = Field::of(heights.view(), length_m, Edges::Periodic)?;
@@ -219,7 +230,11 @@ fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], edges: Edges) -> Result<S
     let oblong = ratio > 1.0 + SPACING_TOLERANCE;
     let coarsening = if oblong { ratio } else { 1.0 };
     if oblong && edges == Edges::Periodic {
-        return Err(domain("the ratio of the pixel sizes along both axes", ratio, "1 for a periodic surface, or periodic = false"));
+        return Err(domain(
+            "the ratio of the pixel sizes along both axes",
+            ratio,
+            "1 for a periodic surface, or periodic = false",
+        ));
     }
     let largest = heights_m.len() as f64 * coarsening;
     if largest > MAX_POINTS_BEFORE_CROP {
@@ -276,7 +291,9 @@ fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, Ph
         let first = (place.floor() as usize).saturating_sub(TAPS / 2 - 1).min(columns - TAPS);
         let weight = |tap: usize| {
             let others = (0..TAPS).filter(|other| *other != tap);
-            others.map(|other| (place - (first + other) as f64) / (tap as f64 - other as f64)).product::<f64>()
+            others
+                .map(|other| (place - (first + other) as f64) / (tap as f64 - other as f64))
+                .product::<f64>()
         };
         let weights: [f64; TAPS] = std::array::from_fn(weight);
         for row in 0..rows {

@@ -9,18 +9,20 @@ use crate::PhysicsError;
 use ndarray::ArrayView2;
 use std::f64::consts::TAU;
 
-/// Curvature attributed to rounding: that of ripples with the cut-off wavelength and this amplitude, relative to the range of heights.
+/// Curvature attributed to rounding: that of ripples with the cut-off wavelength and this amplitude, relative
+/// to the range of heights.
 ///
 /// It is below the resolution of single precision.
 pub(super) const ROUNDING_OF_RIPPLES: f64 = 2e-8;
 
-/// Smaller over larger principal curvature below which a maximum is one of a ridge, due to rounding and to the rule for the edges.
+/// Smaller over larger principal curvature below which a maximum is one of a ridge, due to rounding and to
+/// the rule for the edges.
 pub(super) const RIDGE: f64 = 1e-3;
 
 /// Summits of a prepared surface, and the number excluded at the edges of a non-periodic one.
 ///
-/// `points` is the number of grid points per shortest wavelength.
-/// Maxima of a plateau or along a ridge that are due to rounding are rejected: one of their principal curvatures is zero or far below the other.
+/// `points` is the number of grid points per shortest wavelength. Maxima of a plateau or along a ridge that
+/// are due to rounding are rejected: one of their principal curvatures is zero or far below the other.
 ///
 /// # Errors
 /// As [`find_summits`].
@@ -30,7 +32,9 @@ pub fn find_measured(map: SquareMap<'_>, points: f64) -> Result<(Summits, usize)
         Edges::Periodic => (find_summits(heights_m, length_m, points)?, 0),
         Edges::Open => find_inside(heights_m, length_m, points)?,
     };
-    let (low, high) = heights_m.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
+    let (low, high) = heights_m
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
     let wavenumber = TAU * heights_m.nrows() as f64 / (points * length_m);
     let flat = ROUNDING_OF_RIPPLES * (high - low) * wavenumber * wavenumber;
     let all = found.list.len();
@@ -41,7 +45,11 @@ pub fn find_measured(map: SquareMap<'_>, points: f64) -> Result<(Summits, usize)
 }
 
 /// Asperities of a field that is not periodic, and the number of asperities too close to its edges.
-fn find_inside(heights_m: ArrayView2<'_, f64>, length_m: f64, points: f64) -> Result<(Summits, usize), PhysicsError> {
+fn find_inside(
+    heights_m: ArrayView2<'_, f64>,
+    length_m: f64,
+    points: f64,
+) -> Result<(Summits, usize), PhysicsError> {
     check_points(points)?;
     let n = heights_m.nrows();
     let spacing = length_m / n as f64;

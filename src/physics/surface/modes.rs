@@ -32,7 +32,11 @@ pub(crate) struct Field {
 
 impl Field {
     /// Modes of a square field of side L \[m\] if it is periodic, else of its mirror extension of side 2 L.
-    pub(crate) fn of(heights_m: ArrayView2<'_, f64>, length_m: f64, edges: Edges) -> Result<Self, PhysicsError> {
+    pub(crate) fn of(
+        heights_m: ArrayView2<'_, f64>,
+        length_m: f64,
+        edges: Edges,
+    ) -> Result<Self, PhysicsError> {
         match edges {
             Edges::Periodic => Self::periodic(heights_m, length_m),
             Edges::Open => Self::periodic(mirrored(heights_m)?.view(), 2.0 * length_m),
@@ -74,8 +78,14 @@ impl Field {
     ///
     /// Columns are added in order, so that the result is independent of the threads.
     ///
-    /// `add` receives the sum so far, the squared mode number, the number of modes that this one represents, and `|c_k|²` \[m²\].
-    fn sum<T: Clone + Send + Sync>(&self, zero: &T, add: impl Fn(&mut T, f64, f64, f64) + Sync, join: impl Fn(&mut T, &T)) -> T {
+    /// `add` receives the sum so far, the squared mode number, the number of modes that this one represents, and `|c_k|²`
+    /// \[m²\].
+    fn sum<T: Clone + Send + Sync>(
+        &self,
+        zero: &T,
+        add: impl Fn(&mut T, f64, f64, f64) + Sync,
+        join: impl Fn(&mut T, &T),
+    ) -> T {
         let n = self.n;
         let unit = 1.0 / (n as f64).powi(4);
         let sums: Vec<T> = self
@@ -83,7 +93,8 @@ impl Field {
             .par_chunks(n)
             .enumerate()
             .map(|(ky, column)| {
-                // A column also represents its mirror image, except the first and, for an even number of points, the last.
+                // A column also represents its mirror image, except the first and, for an even number of
+                // points, the last.
                 let times = if ky == 0 || 2 * ky == n { 1.0 } else { 2.0 };
                 let mut sum = zero.clone();
                 for (place, value) in column.iter().enumerate() {
@@ -165,7 +176,8 @@ impl Field {
     /// Removes the mean and applies the Gaussian filter with a cut-off wavelength of `points` points.
     pub(crate) fn smooth(&mut self, points: f64) {
         let n = self.n;
-        let of_mode: Vec<f64> = (0..n).map(|mode| transmission(points, mode.min(n - mode) as f64 / n as f64)).collect();
+        let of_mode: Vec<f64> =
+            (0..n).map(|mode| transmission(points, mode.min(n - mode) as f64 / n as f64)).collect();
         self.columns.par_chunks_mut(n).enumerate().for_each(|(ky, column)| {
             column.iter_mut().zip(&of_mode).for_each(|(value, along_x)| *value *= along_x * of_mode[ky]);
         });

@@ -1,10 +1,12 @@
 //! Isolated outliers of a scan: spikes and dips of up to four points.
 //!
-//! A point is a candidate if it differs from the median of its neighbours, the 24 other points of a square of 5 x 5, by more than six robust standard
-//! deviations: 1.4826 times the median absolute deviation of all points from the median of their neighbours.
-//! The candidate is an outlier if it is isolated in two respects; steps, corners, ridges and apices are not:
+//! A point is a candidate if it differs from the median of its neighbours, the 24 other points of a square of
+//! 5 x 5, by more than six robust standard deviations: 1.4826 times the median absolute deviation of all
+//! points from the median of their neighbours. The candidate is an outlier if it is isolated in two respects;
+//! steps, corners, ridges and apices are not:
 //! - At half of its height at most three more points are connected to it (the group).
-//! - It differs from the points around the group more than three times as much as these differ from the next ring of points.
+//! - It differs from the points around the group more than three times as much as these differ from the next
+//!   ring of points.
 
 use super::edges::Edges;
 use ndarray::{Array2, ArrayView2};
@@ -42,7 +44,9 @@ pub fn find_outliers(heights: ArrayView2<'_, f64>, edges: Edges) -> Vec<Place> {
     }
     let scan = Scan { heights, edges };
     let limit = OUTLIER_LIMIT * scan.deviation();
-    let of_row = |row: usize| (0..columns).map(move |column| (row, column)).filter(|place| scan.is_outlier(*place, limit));
+    let of_row = |row: usize| {
+        (0..columns).map(move |column| (row, column)).filter(|place| scan.is_outlier(*place, limit))
+    };
     (0..rows).into_par_iter().flat_map_iter(of_row).collect()
 }
 
@@ -55,7 +59,8 @@ pub fn deviations(heights: ArrayView2<'_, f64>, places: &[Place], edges: Edges) 
 
 /// Replaces outliers by the harmonic in-fill: each height is the mean of its four neighbours.
 ///
-/// Missing points have no part in the means, and remain missing. Where all four are missing the height is the median of the neighbours.
+/// Missing points have no part in the means, and remain missing. Where all four are missing the height is the
+/// median of the neighbours.
 pub fn replace_outliers(heights: &mut Array2<f64>, outliers: &[Place], edges: Edges) {
     outliers.iter().for_each(|place| heights[*place] = f64::NAN);
     let medians: Vec<f64> = {
@@ -66,7 +71,9 @@ pub fn replace_outliers(heights: &mut Array2<f64>, outliers: &[Place], edges: Ed
     for _ in 0..SWEEPS {
         for place in outliers {
             let scan = Scan { heights: heights.view(), edges };
-            let around = [(-1, 0), (1, 0), (0, -1), (0, 1)].into_iter().filter_map(|step| scan.height_at(*place, step));
+            let around = [(-1, 0), (1, 0), (0, -1), (0, 1)]
+                .into_iter()
+                .filter_map(|step| scan.height_at(*place, step));
             let (sum, count) = around.fold((0.0, 0.0), |(sum, count), height| (sum + height, count + 1.0));
             if count > 0.0 {
                 heights[*place] = sum / count;
@@ -103,7 +110,8 @@ impl Scan<'_> {
         let (mut known, mut count) = ([0.0; NEIGHBOURS], 0);
         for down in -2..=2 {
             for right in -2..=2 {
-                if let Some(height) = self.height_at(place, (down, right)).filter(|_| (down, right) != (0, 0)) {
+                if let Some(height) = self.height_at(place, (down, right)).filter(|_| (down, right) != (0, 0))
+                {
                     known[count] = height;
                     count += 1;
                 }
@@ -112,18 +120,25 @@ impl Scan<'_> {
         (count >= MIN_NEIGHBOURS).then(|| median(&mut known[..count]))
     }
 
-    /// Robust standard deviation of the points from the median of their neighbours; at least the smallest step between two adjacent heights, so that
-    /// single steps of a quantized scan are none.
+    /// Robust standard deviation of the points from the median of their neighbours; at least the smallest
+    /// step between two adjacent heights, so that single steps of a quantized scan are none.
     fn deviation(&self) -> f64 {
         let (rows, columns) = self.heights.dim();
         // An odd stride meets every phase of a pattern with an even period.
         let stride = (rows * columns).div_ceil(SAMPLE) | 1;
         let of_point = |k: usize| {
             let place = (k / columns, k % columns);
-            self.median(place).map(|median| (self.heights[place] - median).abs()).filter(|deviation| deviation.is_finite())
+            self.median(place)
+                .map(|median| (self.heights[place] - median).abs())
+                .filter(|deviation| deviation.is_finite())
         };
-        let mut deviations: Vec<f64> = (0..rows * columns).into_par_iter().step_by(stride).filter_map(of_point).collect();
-        if deviations.is_empty() { f64::INFINITY } else { (DEVIATION * median(&mut deviations)).max(self.quantum()) }
+        let mut deviations: Vec<f64> =
+            (0..rows * columns).into_par_iter().step_by(stride).filter_map(of_point).collect();
+        if deviations.is_empty() {
+            f64::INFINITY
+        } else {
+            (DEVIATION * median(&mut deviations)).max(self.quantum())
+        }
     }
 
     /// Smallest difference of two adjacent heights that differ.
@@ -131,18 +146,24 @@ impl Scan<'_> {
         let smallest = |row: usize| {
             let of_point = |column: usize| {
                 let height = self.heights[(row, column)];
-                let next = [(0, 1), (1, 0)].into_iter().filter_map(move |step| self.height_at((row, column), step));
-                next.map(move |other| (other - height).abs()).filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min)
+                let next =
+                    [(0, 1), (1, 0)].into_iter().filter_map(move |step| self.height_at((row, column), step));
+                next.map(move |other| (other - height).abs())
+                    .filter(|step| *step > 0.0)
+                    .fold(f64::INFINITY, f64::min)
             };
             (0..self.heights.ncols()).map(of_point).fold(f64::INFINITY, f64::min)
         };
-        let quantum = (0..self.heights.nrows()).into_par_iter().map(smallest).reduce(|| f64::INFINITY, f64::min);
+        let quantum =
+            (0..self.heights.nrows()).into_par_iter().map(smallest).reduce(|| f64::INFINITY, f64::min);
         if quantum.is_finite() { quantum } else { 0.0 }
     }
 
     fn is_outlier(&self, place: Place, limit: f64) -> bool {
         let height = self.heights[place];
-        let Some(base) = self.median(place).filter(|base| (height - base).abs() > limit) else { return false };
+        let Some(base) = self.median(place).filter(|base| (height - base).abs() > limit) else {
+            return false;
+        };
         let Some(group) = self.group(place, base) else { return false };
         let near = self.ring(&group);
         let far = self.ring(&[group.as_slice(), near.as_slice()].concat());
@@ -154,7 +175,8 @@ impl Scan<'_> {
         levels.is_some_and(|(near, far)| (height - near).abs() > CONTRAST * (near - far).abs())
     }
 
-    /// The points that are connected to one at half of its height above the `base`, or depth below; nothing if they are too many.
+    /// The points that are connected to one at half of its height above the `base`, or depth below; nothing
+    /// if they are too many.
     fn group(&self, place: Place, base: f64) -> Option<Vec<Place>> {
         let height = self.heights[place] - base;
         let mut group = vec![place];
@@ -177,7 +199,8 @@ impl Scan<'_> {
             let place = *place;
             (-1..=1).flat_map(move |down| (-1..=1).filter_map(move |right| self.place(place, (down, right))))
         };
-        let mut ring: Vec<Place> = group.iter().flat_map(around).filter(|place| self.heights[*place].is_finite()).collect();
+        let mut ring: Vec<Place> =
+            group.iter().flat_map(around).filter(|place| self.heights[*place].is_finite()).collect();
         ring.sort_unstable();
         ring.dedup();
         ring.retain(|place| !group.contains(place));

@@ -1,6 +1,7 @@
 //! Offsets of scan lines: their detection and removal.
 //!
-//! A scanning instrument measures line by line along its fast axis, and drift or vibration gives each line an offset of its own.
+//! A scanning instrument measures line by line along its fast axis, and drift or vibration gives each line an
+//! offset of its own.
 
 use super::outliers::median;
 use crate::model::FastAxis;
@@ -15,13 +16,15 @@ const MIN_LINES: usize = 16;
 const CLIP: f64 = 4.0 * 1.4826;
 /// Minimum part of the variance of the differences that all parts of a line have in common.
 pub(super) const COMMON: f64 = 0.5;
-/// Rms fourth difference over rms second difference of offsets, both of unit response to independent offsets: about 1. Smooth surfaces are below.
+/// Rms fourth difference over rms second difference of offsets, both of unit response to independent offsets:
+/// about 1. Smooth surfaces are below.
 const INDEPENDENT: [f64; 2] = [0.77, 1.35];
 /// Maximum correlation of the offsets at any distance. Periodic surfaces are above.
 pub(super) const PERIODIC: f64 = 0.8;
 /// Largest distance of that correlation in lines.
 const LONGEST_LAG: usize = 512;
-/// Variance of a fourth difference over 6, and of a second difference over 2, of independent numbers of variance 1.
+/// Variance of a fourth difference over 6, and of a second difference over 2, of independent numbers of
+/// variance 1.
 const VARIANCES: [f64; 2] = [70.0 / 36.0, 1.5];
 /// Standard deviations beyond which a single line is displaced.
 const DISPLACED: f64 = 6.0 * 1.4826;
@@ -67,13 +70,15 @@ fn offsets(heights: ArrayView2<'_, f64>) -> Vec<f64> {
     let mean = offsets.iter().sum::<f64>() / count;
     let place = |row: usize| row as f64 - 0.5 * (count - 1.0);
     let norm: f64 = (0..rows).map(|row| place(row).powi(2)).sum();
-    let slope = offsets.iter().enumerate().map(|(row, offset)| place(row) * offset).sum::<f64>() / norm.max(1.0);
+    let slope =
+        offsets.iter().enumerate().map(|(row, offset)| place(row) * offset).sum::<f64>() / norm.max(1.0);
     offsets.iter().enumerate().map(|(row, offset)| offset - mean - slope * place(row)).collect()
 }
 
 /// Median difference of two lines where both are known.
 fn difference(from: ArrayView1<'_, f64>, to: ArrayView1<'_, f64>) -> Option<f64> {
-    let mut differences: Vec<f64> = from.iter().zip(to).map(|(from, to)| to - from).filter(|step| step.is_finite()).collect();
+    let mut differences: Vec<f64> =
+        from.iter().zip(to).map(|(from, to)| to - from).filter(|step| step.is_finite()).collect();
     (!differences.is_empty()).then(|| median(&mut differences))
 }
 
@@ -169,7 +174,8 @@ fn correlation(list: &[[f64; PARTS]]) -> f64 {
 
 /// Rms offset of single rows that are displaced against both neighbours.
 fn displaced_offset(steps: &[Option<[f64; PARTS]>], rows: usize) -> f64 {
-    let bends: Vec<Option<[f64; PARTS]>> = steps.windows(2).map(|pair| combined(pair, [0.5, -0.5]).into_iter().next()).collect();
+    let bends: Vec<Option<[f64; PARTS]>> =
+        steps.windows(2).map(|pair| combined(pair, [0.5, -0.5]).into_iter().next()).collect();
     let middle = |bend: &Option<[f64; PARTS]>| bend.as_ref().map(|parts| median(&mut parts.clone()));
     let medians: Vec<Option<f64>> = bends.iter().map(middle).collect();
     let mut sizes: Vec<f64> = medians.iter().flatten().map(|bend| bend.abs()).collect();
@@ -181,7 +187,9 @@ fn displaced_offset(steps: &[Option<[f64; PARTS]>], rows: usize) -> f64 {
         let (Some(parts), Some(bend)) = (bends[*k], medians[*k]) else { return false };
         // All parts bend alike, and both neighbours by half as much the other way.
         let alike = parts.iter().all(|part| part / bend > 0.5);
-        let opposed = [k - 1, k + 1].iter().all(|next| medians[*next].is_some_and(|next| (-0.8..=-0.2).contains(&(next / bend))));
+        let opposed = [k - 1, k + 1]
+            .iter()
+            .all(|next| medians[*next].is_some_and(|next| (-0.8..=-0.2).contains(&(next / bend))));
         bend.abs() > limit && alike && opposed
     };
     let found = (1..bends.len().saturating_sub(1)).filter(displaced);

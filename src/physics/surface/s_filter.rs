@@ -1,11 +1,11 @@
 //! Gaussian low-pass filter (S-filter) of ISO 16610-61, and its comparison with the unfiltered heights.
 //!
-//! Weights `exp(−π(x/(α λc))²)` with `α = sqrt(ln 2/π)`: half of the amplitude of the wavelength λc is transmitted.
-//! The weights are positive, so that filtered heights are between the lowest and the highest height nearby.
-//! A sharp cut-off in wavevectors rings at steps instead.
+//! Weights `exp(−π(x/(α λc))²)` with `α = sqrt(ln 2/π)`: half of the amplitude of the wavelength λc is
+//! transmitted. The weights are positive, so that filtered heights are between the lowest and the highest
+//! height nearby. A sharp cut-off in wavevectors rings at steps instead.
 //!
-//! Near an edge the kernel is truncated.
-//! A linear factor then retains its moments of order 0 and 1, so that planes are transmitted unchanged (moment retainment, ISO/TS 16610-28).
+//! Near an edge the kernel is truncated. A linear factor then retains its moments of order 0 and 1, so that
+//! planes are transmitted unchanged (moment retainment, ISO/TS 16610-28).
 
 use super::edges::Edges;
 use super::summits::maxima_of_row;
@@ -26,11 +26,15 @@ fn weight(distance: f64) -> f64 {
     (-PI * PI / LN_2 * distance * distance).exp()
 }
 
-/// Transmission of the sampled kernel with a cut-off of `points` points, at a number of cycles per point along one direction.
+/// Transmission of the sampled kernel with a cut-off of `points` points, at a number of cycles per point
+/// along one direction.
 ///
-/// The transmission of the continuous kernel is `exp(−π(α λc/λ)²) = 2^(−(λc/λ)²)`. Sampling adds its images (Poisson's formula).
+/// The transmission of the continuous kernel is `exp(−π(α λc/λ)²) = 2^(−(λc/λ)²)`. Sampling adds its images
+/// (Poisson's formula).
 pub(super) fn transmission(points: f64, cycles_per_point: f64) -> f64 {
-    let images = |cycles: f64| (-4..=4).map(|image| (-(points * (cycles + f64::from(image))).powi(2)).exp2()).sum::<f64>();
+    let images = |cycles: f64| {
+        (-4..=4).map(|image| (-(points * (cycles + f64::from(image))).powi(2)).exp2()).sum::<f64>()
+    };
     images(cycles_per_point) / images(0.0)
 }
 
@@ -110,12 +114,18 @@ fn retaining(distances: Vec<f64>) -> Vec<f64> {
     distances.iter().map(|t| (m2 - m1 * t) / determinant * weight(*t)).collect()
 }
 
-/// Height of filtered maxima above all unfiltered heights nearby, beyond the noise \[m\]; 0 where there is no such maximum.
+/// Height of filtered maxima above all unfiltered heights nearby, beyond the noise \[m\]; 0 where there is no
+/// such maximum.
 ///
 /// Nearby is within one cut-off wavelength of `points` points along rows and columns.
 /// Maxima within `margin` points of the edges are left out; a margin of 0 is a periodic field.
 /// The noise is the median absolute value of the removed heights times 1.4826, which steps do not affect.
-pub(super) fn overshoot(raw: ArrayView2<'_, f64>, filtered: ArrayView2<'_, f64>, points: f64, margin: usize) -> f64 {
+pub(super) fn overshoot(
+    raw: ArrayView2<'_, f64>,
+    filtered: ArrayView2<'_, f64>,
+    points: f64,
+    margin: usize,
+) -> f64 {
     let n = raw.nrows();
     let reach = points.ceil() as usize;
     let above = |(row, column): (usize, usize)| {
@@ -127,13 +137,20 @@ pub(super) fn overshoot(raw: ArrayView2<'_, f64>, filtered: ArrayView2<'_, f64>,
         let edges = Edges::of(margin == 0);
         height - highest_near(raw, [row, column], reach, edges, height)
     };
-    let most = |row: usize| maxima_of_row(filtered, row).into_iter().map(above).fold(f64::NEG_INFINITY, f64::max);
+    let most =
+        |row: usize| maxima_of_row(filtered, row).into_iter().map(above).fold(f64::NEG_INFINITY, f64::max);
     let most = (0..n).into_par_iter().map(most).reduce(|| f64::NEG_INFINITY, f64::max);
     if most > 0.0 { (most - noise(raw, filtered)).max(0.0) } else { 0.0 }
 }
 
 /// Highest of the heights around a point, or the first one above `enough`.
-fn highest_near(raw: ArrayView2<'_, f64>, [row, column]: [usize; 2], reach: usize, edges: Edges, enough: f64) -> f64 {
+fn highest_near(
+    raw: ArrayView2<'_, f64>,
+    [row, column]: [usize; 2],
+    reach: usize,
+    edges: Edges,
+    enough: f64,
+) -> f64 {
     let n = raw.nrows();
     if edges == Edges::Open {
         let span = |k: usize| k.saturating_sub(reach)..(k + reach + 1).min(n);

@@ -1,9 +1,10 @@
 //! Fit of a self-affine spectrum with a roll-off to the part of a measured spectrum that holds data.
 //!
-//! A measured spectrum holds more than the surface: rounding where a filter removed wavelengths, leakage of the window and of filters,
-//! and white noise. The fit therefore determines the band of rings together with the spectrum: it minimizes the sum of the squared
-//! residuals of the rings inside, over their variances, and of a constant cost for each ring outside.
-//! Shapes of the spectrum: a power law, with a sharp or a smooth roll-off, with or without damping by a Gaussian filter.
+//! A measured spectrum holds more than the surface: rounding where a filter removed wavelengths, leakage of
+//! the window and of filters, and white noise. The fit therefore determines the band of rings together with
+//! the spectrum: it minimizes the sum of the squared residuals of the rings inside, over their variances, and
+//! of a constant cost for each ring outside. Shapes of the spectrum: a power law, with a sharp or a smooth
+//! roll-off, with or without damping by a Gaussian filter.
 
 use super::psd_bin::{Estimate, Ring};
 pub use super::spectral_band::ShortCut;
@@ -28,13 +29,15 @@ pub struct SelfAffine {
     pub rolls_off: bool,
     /// Rms deviation of log10 C from the fit, weighted by the inverse variance.
     pub scatter: f64,
-    /// Wavenumber below which the spectrum holds no data \[1/m\]; nothing if it holds data up to the longest wavelength.
+    /// Wavenumber below which the spectrum holds no data \[1/m\]; nothing if it holds data up to the longest
+    /// wavelength.
     pub long_cut_1_m: Option<f64>,
     /// End of the spectrum at short wavelengths; nothing if it holds data up to the grid's limit.
     pub short_cut: Option<ShortCut>,
 }
 
-/// Decrease of the cost that a roll-off, and that damping, must yield; an L-filter, which resembles a roll-off, must yield more.
+/// Decrease of the cost that a roll-off, and that damping, must yield; an L-filter, which resembles a
+/// roll-off, must yield more.
 const OF_SHAPE: f64 = 8.0;
 /// Fewest rings of a fit.
 pub(super) const MIN_RINGS: usize = 5;
@@ -57,16 +60,19 @@ const HURST: RangeInclusive<f64> = -0.05..=1.1;
 pub(super) const MAX_SCATTER: f64 = 0.5;
 /// Exponents of a spectrum that is fitted at all, from a density that grows with q to that of a smooth form.
 const ANY: RangeInclusive<f64> = -1.5..=3.0;
-/// Cost beyond that of any power law at which a self-affine spectrum is given up: four rings that it leaves out.
+/// Cost beyond that of any power law at which a self-affine spectrum is given up: four rings that it leaves
+/// out.
 const MISFIT: f64 = 4.0 * OUTSIDE;
 /// White noise over the density at the shortest wavelengths.
 const NOISE: [f64; 6] = [0.0, 0.3, 0.55, 0.75, 0.9, 1.0];
-/// Corrections of the white noise for the spectrum that reaches into it, and of the rings for the width of the window.
+/// Corrections of the white noise for the spectrum that reaches into it, and of the rings for the width of
+/// the window.
 const PASSES: usize = 2;
 
 /// Fits a self-affine spectrum to the rings of a surface of side L \[m\].
 ///
-/// Fewer than five rings with data give `None`, and so does a spectrum of few waves, from which any power law deviates by more than half a decade.
+/// Fewer than five rings with data give `None`, and so does a spectrum of few waves, from which any power law
+/// deviates by more than half a decade.
 #[must_use]
 pub fn fit_self_affine(rings: &[Ring], length_m: f64, estimate: Estimate) -> Option<SelfAffine> {
     let sampling = Sampling { length_m, estimate };
@@ -108,15 +114,19 @@ impl Found {
         let points = sampling.points(rings, noise_m4, known);
         let data: Vec<Point> = points.iter().filter(|point| point.is_data).copied().collect();
         // White noise counts: a band of a few rings that exceed it by chance is none.
-        let of_noise =
-            rings.iter().filter(|ring| ring.density_m4 <= OVER_NOISE * noise_m4).map(|ring| ring.mode_count as f64 * ring.density_m4);
-        let search = Search { data: &data, power: data.iter().map(Point::power).sum::<f64>() + of_noise.sum::<f64>() };
+        let of_noise = rings
+            .iter()
+            .filter(|ring| ring.density_m4 <= OVER_NOISE * noise_m4)
+            .map(|ring| ring.mode_count as f64 * ring.density_m4);
+        let search =
+            Search { data: &data, power: data.iter().map(Point::power).sum::<f64>() + of_noise.sum::<f64>() };
         let [self_affine, any] = search.least([&HURST, &ANY]);
         let any = any?;
         let self_affine = self_affine.filter(|found| found.cost <= any.cost + MISFIT);
         let is_self_affine = self_affine.is_some();
         let Candidate { cost, band, line } = self_affine.unwrap_or(any);
-        let of_noise = if noise_m4 > 0.0 { OF_SHAPE + sampling.noise_squares(rings, noise_m4, &line) } else { 0.0 };
+        let of_noise =
+            if noise_m4 > 0.0 { OF_SHAPE + sampling.noise_squares(rings, noise_m4, &line) } else { 0.0 };
         let line = search.without_partial_rings(band, line);
         Some(Self { points, line, noise_m4, is_self_affine, cost: cost + of_noise })
     }
@@ -172,7 +182,13 @@ impl Search<'_> {
     }
 
     /// Compares the lines of a shape through a band, with and without damping, with the best ones.
-    fn compare(&self, sums: &Sums, band: [usize; 2], ranges: [&RangeInclusive<f64>; 2], found: &mut [Option<Candidate>; 2]) {
+    fn compare(
+        &self,
+        sums: &Sums,
+        band: [usize; 2],
+        ranges: [&RangeInclusive<f64>; 2],
+        found: &mut [Option<Candidate>; 2],
+    ) {
         if sums.power(band) < SHARE * self.power {
             return;
         }
@@ -199,7 +215,10 @@ impl Search<'_> {
             Shape::Filtered => 2.0 * OF_SHAPE,
         };
         let outside = self.data.len() - (band[1] - band[0]);
-        squares + OUTSIDE * outside as f64 + of_shape + if form.damping == Damping::Gaussian { OF_SHAPE } else { 0.0 }
+        squares
+            + OUTSIDE * outside as f64
+            + of_shape
+            + if form.damping == Damping::Gaussian { OF_SHAPE } else { 0.0 }
     }
 
     /// A line through a band; nothing if its exponent or its damping is not admitted.
@@ -214,7 +233,9 @@ impl Search<'_> {
 
     /// The line without a first or last ring that the end of the spectrum divides: the next ring is empty.
     fn without_partial_rings(&self, [first, end]: [usize; 2], line: Line) -> Line {
-        let is_empty = |at: Option<usize>| at.and_then(|at| self.data.get(at)).is_some_and(|point| point.is_empty(&line));
+        let is_empty = |at: Option<usize>| {
+            at.and_then(|at| self.data.get(at)).is_some_and(|point| point.is_empty(&line))
+        };
         let from = first + usize::from(is_empty(first.checked_sub(1)));
         let to = end - usize::from(line.damping == 0.0 && is_empty(Some(end)));
         if to < from + MIN_RINGS || line.shape.rolls_off() && self.data[from].x >= line.corner {
@@ -237,10 +258,13 @@ impl Search<'_> {
     }
 }
 
-/// True if damping reaches the cut-off of the filter in the band, is small over enough rings beyond the corner, and continues in the next ring.
+/// True if damping reaches the cut-off of the filter in the band, is small over enough rings beyond the
+/// corner, and continues in the next ring.
 fn is_damped(line: &Line, inside: &[Point], next: Option<&Point>) -> bool {
     let damping = |point: &Point| line.damping * (2.0 * point.x).exp();
     let small = inside.iter().filter(|point| point.x >= line.corner && damping(point) < SMALL_DAMPING);
     let continues = next.is_none_or(|point| point.y - line.at(point.x) > END.ln());
-    small.count() >= MIN_RINGS_BEYOND && continues && inside.last().is_some_and(|point| DAMPING.contains(&damping(point)))
+    small.count() >= MIN_RINGS_BEYOND
+        && continues
+        && inside.last().is_some_and(|point| DAMPING.contains(&damping(point)))
 }

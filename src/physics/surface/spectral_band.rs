@@ -5,13 +5,17 @@ use super::spectral_line::{Line, Point, Shape};
 use crate::model::SpectrumEnd;
 use std::f64::consts::{LN_2, PI, TAU};
 
-/// Relative variance of a ring's density times its number of modes; half of the modes are conjugates of the others.
+/// Relative variance of a ring's density times its number of modes; half of the modes are conjugates of the
+/// others.
 const OF_MODES: f64 = 2.0;
-/// Factor of the variance with two sine tapers u, v along each direction: `(∫(½(u² + v²))²)²`, with `∫u² = ∫v² = 1`.
+/// Factor of the variance with two sine tapers u, v along each direction: `(∫(½(u² + v²))²)²`, with
+/// `∫u² = ∫v² = 1`.
 const TAPERED: f64 = 1.25 * 1.25;
-/// Half the second moment along a direction of the power of these tapers, `½ (1² + 2²)/8` in units of the lowest wavenumber squared.
+/// Half the second moment along a direction of the power of these tapers, `½ (1² + 2²)/8` in units of the
+/// lowest wavenumber squared.
 ///
-/// A power law of exponent p gains the fraction `p²/k²` times this at the mode number k, since `∇²k^(−p) = p² k^(−p−2)` in two dimensions.
+/// A power law of exponent p gains the fraction `p²/k²` times this at the mode number k, since `∇²k^(−p) = p²
+/// k^(−p−2)` in two dimensions.
 const WIDTH: f64 = 0.3125;
 /// Exponent of a spectrum before one is found.
 const USUAL_EXPONENT: f64 = 3.0;
@@ -29,7 +33,8 @@ const TOP: usize = 3;
 const EMPTY: f64 = 0.5;
 /// Ratio of densities above which a ring is full.
 const FULL: f64 = 0.8;
-/// Rings next to the band of which an end of the spectrum empties one: the first may be full, and the second divided.
+/// Rings next to the band of which an end of the spectrum empties one: the first may be full, and the second
+/// divided.
 const NEXT: usize = 3;
 /// Rings next to the band of which white noise dominates one.
 const NEXT_OF_NOISE: usize = 2;
@@ -51,7 +56,8 @@ fn widened(exponent: f64, mode: f64) -> f64 {
 }
 
 impl Point {
-    /// True if a line predicts more than the ring holds, beyond three standard deviations: rings of few modes are low by chance.
+    /// True if a line predicts more than the ring holds, beyond three standard deviations: rings of few modes
+    /// are low by chance.
     pub(crate) fn is_empty(&self, line: &Line) -> bool {
         self.y - line.at(self.x) < EMPTY.ln() - 3.0 * self.variance.sqrt()
     }
@@ -71,7 +77,8 @@ pub(crate) struct Sampling {
 }
 
 impl Sampling {
-    /// All rings, less white noise \[m⁴\] and less the power that the tapers move from longer wavelengths of a spectrum.
+    /// All rings, less white noise \[m⁴\] and less the power that the tapers move from longer wavelengths of
+    /// a spectrum.
     pub(crate) fn points(&self, rings: &[Ring], noise_m4: f64, line: Option<&Line>) -> Vec<Point> {
         let lowest = TAU / self.length_m;
         let is_tapered = self.estimate == Estimate::Tapered;
@@ -95,8 +102,14 @@ impl Sampling {
     pub(crate) fn noise_squares(&self, rings: &[Ring], noise_m4: f64, line: &Line) -> f64 {
         let of_noise = rings.iter().filter(|ring| ring.density_m4 <= OVER_NOISE * noise_m4);
         let square = |ring: &Ring| {
-            let expected = noise_m4 + if ring.wavenumber_1_m.ln() > line.band[1] { line.at(ring.wavenumber_1_m.ln()).exp() } else { 0.0 };
-            (ring.density_m4 / expected).ln().powi(2) / (relative_variance(ring, self.estimate) + OF_MODEL * OF_MODEL)
+            let expected = noise_m4
+                + if ring.wavenumber_1_m.ln() > line.band[1] {
+                    line.at(ring.wavenumber_1_m.ln()).exp()
+                } else {
+                    0.0
+                };
+            (ring.density_m4 / expected).ln().powi(2)
+                / (relative_variance(ring, self.estimate) + OF_MODEL * OF_MODEL)
         };
         of_noise.map(square).map(|square| square.min(OUTSIDE)).sum()
     }
@@ -115,7 +128,8 @@ pub(crate) fn top_density(rings: &[Ring]) -> f64 {
 
 /// White noise \[m⁴\] less the part of the spectrum that reaches into its rings.
 pub(crate) fn white_noise_beyond(rings: &[Ring], line: &Line, noise_m4: f64) -> f64 {
-    let of_noise: Vec<Ring> = rings.iter().rev().take_while(|ring| ring.density_m4 < OVER_NOISE * noise_m4).copied().collect();
+    let of_noise: Vec<Ring> =
+        rings.iter().rev().take_while(|ring| ring.density_m4 < OVER_NOISE * noise_m4).copied().collect();
     if of_noise.is_empty() {
         return noise_m4;
     }
@@ -145,14 +159,18 @@ impl Band<'_> {
         (point.y - self.line.at(point.x)).exp().min(1.0)
     }
 
-    /// Wavenumber below which the spectrum holds no data \[1/m\]: that of an L-filter, or of the disc of the modes that are not filled.
+    /// Wavenumber below which the spectrum holds no data \[1/m\]: that of an L-filter, or of the disc of the
+    /// modes that are not filled.
     pub(crate) fn long_cut_1_m(&self) -> Option<f64> {
         if self.line.shape == Shape::Filtered {
             return Some(self.line.corner.exp());
         }
         let rings = || self.points.iter().rev().filter(|point| point.is_data);
         // The fit leaves out a first ring next to an empty one even if it is full.
-        let full = rings().filter(|point| point.x <= self.line.band[0]).take_while(|point| self.filled(point) > FULL).last();
+        let full = rings()
+            .filter(|point| point.x <= self.line.band[0])
+            .take_while(|point| self.filled(point) > FULL)
+            .last();
         let first = full.map_or(self.line.band[0], |point| point.x);
         let below = || rings().filter(|point| point.x < first);
         if !below().take(NEXT).any(|point| point.is_empty(self.line)) {
@@ -160,8 +178,13 @@ impl Band<'_> {
         }
         let filled: f64 = below().map(|point| point.modes * self.filled(point)).sum();
         let empty = (self.modes_below(first) - filled).max(0.0);
-        // Rings of long wavelengths have few modes: the next shorter wavelength is known better than the area.
-        Some((empty * self.cell()).sqrt().max(LOWER_RING_EDGE * first.exp() * f64::from(u8::from(filled < 1.0))))
+        // Rings of long wavelengths have few modes: the next shorter wavelength is known better than the
+        // area.
+        Some(
+            (empty * self.cell())
+                .sqrt()
+                .max(LOWER_RING_EDGE * first.exp() * f64::from(u8::from(filled < 1.0))),
+        )
     }
 
     /// Area of a mode over π \[1/m²\].
@@ -183,14 +206,19 @@ impl Band<'_> {
         }
         let last = self.line.band[1];
         let beyond = || self.points.iter().filter(|point| point.x > last);
-        let is_noise = |point: &Point| self.noise_m4 > 0.0 && self.line.at(point.x).exp() < 2.0 * OVER_NOISE * self.noise_m4;
+        let is_noise = |point: &Point| {
+            self.noise_m4 > 0.0 && self.line.at(point.x).exp() < 2.0 * OVER_NOISE * self.noise_m4
+        };
         if beyond().take(NEXT_OF_NOISE).any(is_noise) {
             let crossing = beyond().find(|point| self.line.at(point.x).exp() < self.noise_m4)?;
             return Some(ShortCut { wavenumber_1_m: crossing.x.exp(), cause: SpectrumEnd::WhiteNoise });
         }
         let filled: f64 = beyond().map(|point| point.modes * self.filled(point)).sum();
         let wavenumber_1_m = ((self.modes_below(last) + self.modes_at(last) + filled) * self.cell()).sqrt();
-        beyond().take(NEXT).any(|point| point.is_empty(self.line)).then_some(ShortCut { wavenumber_1_m, cause: SpectrumEnd::Empty })
+        beyond()
+            .take(NEXT)
+            .any(|point| point.is_empty(self.line))
+            .then_some(ShortCut { wavenumber_1_m, cause: SpectrumEnd::Empty })
     }
 
     fn modes_at(&self, x: f64) -> f64 {

@@ -26,7 +26,8 @@ pub(crate) enum Shape {
     Sharp,
     /// `(1 + (q/q_r)²)^(−(H+1))`, whose asymptotes meet at the corner.
     Smooth,
-    /// A power law after a Gaussian L-filter (ISO 16610-61), which transmits half of the amplitude at the corner.
+    /// A power law after a Gaussian L-filter (ISO 16610-61), which transmits half of the amplitude at the
+    /// corner.
     Filtered,
 }
 
@@ -67,7 +68,8 @@ impl Shape {
     }
 }
 
-/// Self-affine spectrum `ln C = level − power b(ln q) − damping q² + ln T²(q)`, with the transfer T of an L-filter.
+/// Self-affine spectrum `ln C = level − power b(ln q) − damping q² + ln T²(q)`, with the transfer T of an
+/// L-filter.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Line {
     /// Transition to the power law.
@@ -96,7 +98,9 @@ impl Line {
         let (first, last) = (points.first()?, points.last()?);
         // Squares of wavenumbers relative to the last keep the equations well scaled.
         let unit = last.x;
-        let basis = |x: f64| [1.0, -decay(shape, x - corner), if is_damped { -(2.0 * (x - unit)).exp() } else { 0.0 }];
+        let basis = |x: f64| {
+            [1.0, -decay(shape, x - corner), if is_damped { -(2.0 * (x - unit)).exp() } else { 0.0 }]
+        };
         let count = damping.coefficients();
         let mut matrix = [[0.0; 4]; 3];
         for point in points {
@@ -113,7 +117,16 @@ impl Line {
             return None;
         }
         let damping = damping * (-2.0 * unit).exp();
-        let mut line = Self { shape, corner, level, power, damping, squares: 0.0, scatter: 0.0, band: [first.x, last.x] };
+        let mut line = Self {
+            shape,
+            corner,
+            level,
+            power,
+            damping,
+            squares: 0.0,
+            scatter: 0.0,
+            band: [first.x, last.x],
+        };
         let weight: f64 = points.iter().map(|point| 1.0 / point.variance).sum();
         line.squares = points.iter().map(|point| (point.y - line.at(point.x)).powi(2) / point.variance).sum();
         line.scatter = (line.squares / weight).sqrt();
@@ -122,7 +135,11 @@ impl Line {
 
     /// Its form, with a corner at another `ln q`.
     pub(crate) fn form(&self, corner: f64) -> Form {
-        Form { shape: self.shape, corner, damping: if self.damping > 0.0 { Damping::Gaussian } else { Damping::None } }
+        Form {
+            shape: self.shape,
+            corner,
+            damping: if self.damping > 0.0 { Damping::Gaussian } else { Damping::None },
+        }
     }
 
     /// Hurst exponent.
@@ -133,7 +150,8 @@ impl Line {
     /// `ln C` at `ln q`.
     pub(crate) fn at(&self, x: f64) -> f64 {
         let beyond = x - self.corner;
-        self.level - self.power * decay(self.shape, beyond) - self.damping * (2.0 * x).exp() + transmitted(self.shape, beyond)
+        self.level - self.power * decay(self.shape, beyond) - self.damping * (2.0 * x).exp()
+            + transmitted(self.shape, beyond)
     }
 
     /// Local exponent `−d ln C/d ln q`, without an L-filter.
@@ -152,7 +170,8 @@ impl Line {
 pub(crate) struct Sums {
     pub(crate) shape: Shape,
     pub(crate) corner: f64,
-    /// For each number of rings: products of the basis, of it with ln C, the square of ln C, all over the variance, and the mean square height.
+    /// For each number of rings: products of the basis, of it with ln C, the square of ln C, all over the
+    /// variance, and the mean square height.
     sums: Vec<[f64; 11]>,
 }
 
@@ -191,11 +210,14 @@ impl Sums {
         self.sums[end][10] - self.sums[first][10]
     }
 
-    /// Hurst exponent and sum of the squared deviations of the line through a band; nothing if it is singular or if damping is not positive.
+    /// Hurst exponent and sum of the squared deviations of the line through a band; nothing if it is singular
+    /// or if damping is not positive.
     pub(crate) fn solved(&self, band: [usize; 2], damping: Damping) -> Option<(f64, f64)> {
         let sums = self.over(band);
         let count = damping.coefficients();
-        let matrix = std::array::from_fn(|a| std::array::from_fn(|b| if b < 3 { sums[PRODUCTS[a][b]] } else { sums[6 + a] }));
+        let matrix = std::array::from_fn(|a| {
+            std::array::from_fn(|b| if b < 3 { sums[PRODUCTS[a][b]] } else { sums[6 + a] })
+        });
         let solution = solved(matrix, count)?;
         if damping == Damping::Gaussian && solution[2] <= 0.0 {
             return None;

@@ -103,11 +103,16 @@ impl MomentSums {
     pub(crate) fn moments(&self, spectrum: &Spectrum) -> Moments {
         let ql = spectrum.lowest_wavenumber();
         let cell = ql * ql * self.scale(spectrum).powi(2);
-        Moments { m0_m2: cell * self.0[0], m2: 0.5 * cell * ql.powi(2) * self.0[1], m4_1_m2: 0.375 * cell * ql.powi(4) * self.0[2] }
+        Moments {
+            m0_m2: cell * self.0[0],
+            m2: 0.5 * cell * ql.powi(2) * self.0[1],
+            m4_1_m2: 0.375 * cell * ql.powi(4) * self.0[2],
+        }
     }
 }
 
-/// Spectral moments of an isotropic surface: mean squares of height, slope and curvature of a profile through it.
+/// Spectral moments of an isotropic surface: mean squares of height, slope and curvature of a profile through
+/// it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
     /// m0 \[m²\].
@@ -119,8 +124,8 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Moments of an isotropic surface, from its rms height \[m\], rms slope and rms Laplacian \[1/m\]: `m0 = h_rms²`, `m2 = h'_rms²/2`,
-    /// `m4 = 3 h''_rms²/8`.
+    /// Moments of an isotropic surface, from its rms height \[m\], rms slope and rms Laplacian \[1/m\]:
+    /// `m0 = h_rms²`, `m2 = h'_rms²/2`, `m4 = 3 h''_rms²/8`.
     #[must_use]
     pub fn of_rms(height_m: f64, slope: f64, laplacian_1_m: f64) -> Self {
         Self { m0_m2: height_m.powi(2), m2: 0.5 * slope.powi(2), m4_1_m2: 0.375 * laplacian_1_m.powi(2) }

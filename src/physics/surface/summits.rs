@@ -1,8 +1,8 @@
 //! Summits of a height field, the asperities of the contact model.
 //!
-//! A summit is a local maximum over its eight neighbours, refined to the apex between grid points.
-//! With four neighbours the density converges to a value 29 % too high.
-//! Curvatures are those of the band-limited surface. Finite differences would be 3 % low at 8 points per shortest wavelength.
+//! A summit is a local maximum over its eight neighbours, refined to the apex between grid points. With four
+//! neighbours the density converges to a value 29 % too high. Curvatures are those of the band-limited
+//! surface. Finite differences would be 3 % low at 8 points per shortest wavelength.
 //!
 //! Of equal neighbours the first in grid order is the summit, and a flat surface has none.
 //! A maximum whose apex cannot be refined within one grid spacing stays at its grid point.
@@ -59,13 +59,22 @@ pub struct Summits {
 /// Finds the summits of a periodic band-limited surface.
 ///
 /// # Errors
-/// More than two points per shortest wavelength are needed; with fewer the heights do not determine the surface.
-pub fn find_summits(heights_m: ArrayView2<'_, f64>, length_m: f64, points_per_shortest_wavelength: f64) -> Result<Summits, PhysicsError> {
+/// More than two points per shortest wavelength are needed; with fewer the heights do not determine the
+/// surface.
+pub fn find_summits(
+    heights_m: ArrayView2<'_, f64>,
+    length_m: f64,
+    points_per_shortest_wavelength: f64,
+) -> Result<Summits, PhysicsError> {
     check_points(points_per_shortest_wavelength)?;
     let found = apexes(heights_m, length_m, points_per_shortest_wavelength, 0..heights_m.nrows());
     let all = found.len();
     let list: Vec<Summit> = found.into_iter().flatten().collect();
-    Ok(Summits { rejected: all - list.len(), unrefined: list.iter().filter(|summit| !summit.refined).count(), list })
+    Ok(Summits {
+        rejected: all - list.len(),
+        unrefined: list.iter().filter(|summit| !summit.refined).count(),
+        list,
+    })
 }
 
 /// Refuses a number of points per shortest wavelength that does not determine the surface.
@@ -81,7 +90,8 @@ pub(super) fn check_points(points_per_shortest_wavelength: f64) -> Result<(), Ph
     Ok(())
 }
 
-/// Apexes of the grid maxima whose row and column are in a range; nothing where the mean curvature is not positive.
+/// Apexes of the grid maxima whose row and column are in a range; nothing where the mean curvature is not
+/// positive.
 pub(super) fn apexes(
     heights: ArrayView2<'_, f64>,
     length: f64,
@@ -109,7 +119,8 @@ pub(super) fn maxima_of_row(heights: ArrayView2<'_, f64>, row: usize) -> Vec<(us
     for column in 0..columns {
         let (left, right) = ((column + columns - 1) % columns, (column + 1) % columns);
         let h = here[column];
-        // Strictly above the preceding neighbours and not below the following ones: one summit per plateau of two points.
+        // Strictly above the preceding neighbours and not below the following ones: one summit per plateau of
+        // two points.
         let before = h > above[left] && h > above[column] && h > above[right] && h > here[left];
         if before && h >= here[right] && h >= below[left] && h >= below[column] && h >= below[right] {
             maxima.push((row, column));
@@ -118,7 +129,8 @@ pub(super) fn maxima_of_row(heights: ArrayView2<'_, f64>, row: usize) -> Vec<(us
     maxima
 }
 
-/// Apex near a grid maximum by Newton's method on the gradient, or the grid point if that leaves the vicinity.
+/// Apex near a grid maximum by Newton's method on the gradient, or the grid point if that leaves the
+/// vicinity.
 fn apex(surface: &BandLimited<'_>, row: usize, column: usize, spacing: f64, length: f64) -> Option<Summit> {
     let start = [row as f64 * spacing, column as f64 * spacing];
     let refined = refine(surface, start, spacing);
@@ -153,7 +165,8 @@ fn refine(surface: &BandLimited<'_>, start: [f64; 2], spacing: f64) -> Option<([
         let [xx, xy, yy] = jet.hessian_1_m;
         let determinant = xx * yy - xy * xy;
         let concave = determinant > 0.0 && xx < 0.0;
-        // Newton step, or a step along the gradient if the Hessian is not negative definite, since Newton would converge to a saddle.
+        // Newton step, or a step along the gradient if the Hessian is not negative definite, since Newton
+        // would converge to a saddle.
         let slope = gx.hypot(gy);
         let mut step = if concave {
             [(xy * gy - yy * gx) / determinant, (xy * gx - xx * gy) / determinant]
@@ -171,7 +184,8 @@ fn refine(surface: &BandLimited<'_>, start: [f64; 2], spacing: f64) -> Option<([
             let there = [here[0] + step[0], here[1] + step[1]];
             let inside = (0..2).all(|k| (there[k] - start[k]).abs() <= spacing);
             let next = surface.jet(there[0], there[1]);
-            // Below a thousandth of a spacing heights differ by rounding only, and the Newton step is accepted.
+            // Below a thousandth of a spacing heights differ by rounding only, and the Newton step is
+            // accepted.
             if inside && (next.height_m > jet.height_m || step[0].abs().max(step[1].abs()) < 1e-3 * spacing) {
                 moved = Some((there, next));
                 break;

@@ -67,15 +67,20 @@ fn mode(spectrum: &Spectrum, phases: &mut Phases, kx: i64, ky: u64) -> (Complex6
         if spectrum.amplitudes == Amplitudes::Gaussian {
             power *= exponential;
         }
-        return (Complex64::from_polar(power.sqrt() * spectrum.lowest_wavenumber(), phase), mode_squared, power);
+        return (
+            Complex64::from_polar(power.sqrt() * spectrum.lowest_wavenumber(), phase),
+            mode_squared,
+            power,
+        );
     }
     (Complex64::ZERO, mode_squared, 0.0)
 }
 
 /// Surface of a spectrum and a seed on `n × n` points: `h(x) = Σ_k c_k exp(i k·x)`, `|c_k|² = C(k) qL²`.
 ///
-/// Hermitian symmetry is exact: only a half plane of wavevectors is drawn, and on the line `ky = 0` the mode `−kx` is
-/// the conjugate of `kx`. All modes lie below the grid's Nyquist wavenumber (`2ζ ≤ n`), so the Nyquist lines are zero.
+/// Hermitian symmetry is exact: only a half plane of wavevectors is drawn, and on the line `ky = 0` the mode
+/// `−kx` is the conjugate of `kx`. All modes lie below the grid's Nyquist wavenumber (`2ζ ≤ n`), so the
+/// Nyquist lines are zero.
 ///
 /// Peak memory is 1.25 times the field at 8 points per shortest wavelength.
 #[must_use]
@@ -101,7 +106,8 @@ pub fn synthesize(spectrum: &Spectrum, seed: &[u8; 32], n: usize) -> Surface {
                 for (ky, value) in half.iter_mut().enumerate().take(zeta) {
                     *value = columns[ky * n + x];
                 }
-                // The mean and Nyquist lines of a real transform are real: the first up to rounding, the second is 0.
+                // The mean and Nyquist lines of a real transform are real: the first up to rounding, the
+                // second is 0.
                 half[0].im = 0.0;
                 let outcome = along_y.process_with_scratch(half, row, scratch);
                 debug_assert!(outcome.is_ok(), "lengths and the real lines are set above");
@@ -125,7 +131,11 @@ pub fn synthesis_bytes(spectrum: &Spectrum, n: usize) -> usize {
 ///
 /// `k²` is the squared mode number. The weight 1 gives `h_rms²`.
 #[must_use]
-pub fn mode_sums<const N: usize>(spectrum: &Spectrum, seed: &[u8; 32], weights: impl Fn(u64) -> [f64; N]) -> [f64; N] {
+pub fn mode_sums<const N: usize>(
+    spectrum: &Spectrum,
+    seed: &[u8; 32],
+    weights: impl Fn(u64) -> [f64; N],
+) -> [f64; N] {
     let reach = i64::from(spectrum.magnification) - 1;
     let mut moments = MomentSums::default();
     let mut totals = [0.0; N];

@@ -12,7 +12,8 @@ use std::f64::consts::PI;
 pub struct Texture {
     /// Ratio of the rms slopes along the principal axes of `⟨∂_a h ∂_b h⟩`, the larger over the smaller.
     pub slope_ratio: f64,
-    /// Direction of the smaller rms slope, along the ridges, from the x axis to the y axis, 0 ≤ angle < π \[rad\].
+    /// Direction of the smaller rms slope, along the ridges, from the x axis to the y axis, 0 ≤ angle < π
+    /// \[rad\].
     pub direction_rad: f64,
     /// Str of ISO 25178-2: the shortest over the longest distance at which the autocorrelation decays to 0.2.
     ///
@@ -30,7 +31,8 @@ const DIRECTIONS: usize = 180;
 const STEP: f64 = 0.5;
 /// Maximum number of points along a side of the autocorrelation; of larger fields blocks are averaged.
 const MAX_POINTS: usize = 2048;
-/// Sides over decay lengths from which Str is determined: fewer are too small a sample, and Str of an isotropic surface is below ½ by chance.
+/// Sides over decay lengths from which Str is determined: fewer are too small a sample, and Str of an
+/// isotropic surface is below ½ by chance.
 const DECAY_LENGTHS: f64 = 20.0;
 /// Minimum mean square slope along an axis, relative to the other: rounding.
 const ROUNDING: f64 = 1e-12;
@@ -49,20 +51,31 @@ impl Texture {
         let side = coarse.nrows();
         let correlation = autocorrelation(coarse, edges)?;
         let decays = (0..DIRECTIONS).map(|k| decay(&correlation, side, PI * k as f64 / DIRECTIONS as f64));
-        let (shortest, longest) = decays.fold((f64::INFINITY, 0.0_f64), |(least, most), decay| (least.min(decay), most.max(decay)));
-        Ok(Some(Self { slope_ratio, direction_rad, aspect_ratio_str: shortest / longest, decay_length: shortest / side as f64 }))
+        let (shortest, longest) =
+            decays.fold((f64::INFINITY, 0.0_f64), |(least, most), decay| (least.min(decay), most.max(decay)));
+        Ok(Some(Self {
+            slope_ratio,
+            direction_rad,
+            aspect_ratio_str: shortest / longest,
+            decay_length: shortest / side as f64,
+        }))
     }
 
     /// Texture aspect ratio: the larger of the slope ratio and 1/Str, if the surface is large enough for Str.
     #[must_use]
     pub fn aspect(&self) -> f64 {
-        if self.decay_length * DECAY_LENGTHS <= 1.0 { self.slope_ratio.max(1.0 / self.aspect_ratio_str) } else { self.slope_ratio }
+        if self.decay_length * DECAY_LENGTHS <= 1.0 {
+            self.slope_ratio.max(1.0 / self.aspect_ratio_str)
+        } else {
+            self.slope_ratio
+        }
     }
 }
 
 /// Ratio of the rms slopes along the principal axes, and the direction of the smaller \[rad\].
 ///
-/// Slopes are differences of the fourth order inside the field: mirror images of a field would cancel the mixed product.
+/// Slopes are differences of the fourth order inside the field: mirror images of a field would cancel the
+/// mixed product.
 fn slopes(heights_m: ArrayView2<'_, f64>, edges: Edges) -> (f64, f64) {
     let n = heights_m.nrows();
     let inside = match edges {
@@ -92,7 +105,9 @@ fn averaged(heights_m: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError>
     let block = heights_m.nrows().div_ceil(MAX_POINTS);
     let side = heights_m.nrows() / block;
     let mut coarse = zeros((side, side))?;
-    for (means, lines) in coarse.rows_mut().into_iter().zip(heights_m.exact_chunks((block, heights_m.ncols()))) {
+    for (means, lines) in
+        coarse.rows_mut().into_iter().zip(heights_m.exact_chunks((block, heights_m.ncols())))
+    {
         for (mean, square) in means.into_iter().zip(lines.exact_chunks((block, block))) {
             *mean = square.sum() / (block * block) as f64;
         }
@@ -102,7 +117,8 @@ fn averaged(heights_m: ArrayView2<'_, f64>) -> Result<Array2<f64>, PhysicsError>
     Ok(coarse)
 }
 
-/// Autocorrelation over all lags, over that at zero lag. The negative lags follow after the others, as in a periodic field.
+/// Autocorrelation over all lags, over that at zero lag. The negative lags follow after the others, as in a
+/// periodic field.
 ///
 /// Of a field that is not periodic the mean is over the points that overlap.
 fn autocorrelation(heights: Array2<f64>, edges: Edges) -> Result<Array2<f64>, PhysicsError> {
@@ -126,7 +142,8 @@ fn autocorrelation(heights: Array2<f64>, edges: Edges) -> Result<Array2<f64>, Ph
     Ok(correlation)
 }
 
-/// Distance in points at which the autocorrelation decays to [`DECAYED`] along a direction \[rad\]; half of the side if it does not.
+/// Distance in points at which the autocorrelation decays to [`DECAYED`] along a direction \[rad\]; half of
+/// the side if it does not.
 fn decay(correlation: &Array2<f64>, side: usize, direction_rad: f64) -> f64 {
     let limit = 0.5 * side as f64;
     let (along_y, along_x) = direction_rad.sin_cos();
@@ -148,5 +165,6 @@ fn between(field: &Array2<f64>, x: f64, y: f64) -> f64 {
     let at = |i: i64, j: i64| field[[i.rem_euclid(n) as usize, j.rem_euclid(n) as usize]];
     let (i, j) = (x.floor() as i64, y.floor() as i64);
     let (u, v) = (x - x.floor(), y - y.floor());
-    (1.0 - u) * ((1.0 - v) * at(i, j) + v * at(i, j + 1)) + u * ((1.0 - v) * at(i + 1, j) + v * at(i + 1, j + 1))
+    (1.0 - u) * ((1.0 - v) * at(i, j) + v * at(i, j + 1))
+        + u * ((1.0 - v) * at(i + 1, j) + v * at(i + 1, j + 1))
 }

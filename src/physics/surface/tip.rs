@@ -1,7 +1,8 @@
 //! Tip of a scanning instrument: reliability cut-off, and the rounding that it leaves.
 //!
-//! A tip of radius R traces no summit that is sharper than itself. Sanner, Nöhring, Thimons, Jacobs and Pastewka (Appl. Surf. Sci. Adv. 7:100190, 2022)
-//! therefore compare the curvature of a surface at a scale with that of the tip.
+//! A tip of radius R traces no summit that is sharper than itself. Sanner, Nöhring, Thimons, Jacobs and
+//! Pastewka (Appl. Surf. Sci. Adv. 7:100190, 2022) therefore compare the curvature of a surface at a scale
+//! with that of the tip.
 
 use super::psd_bin::Ring;
 use ndarray::ArrayView2;
@@ -11,10 +12,12 @@ use std::f64::consts::TAU;
 /// Half the width of a ring of wavevectors, in octaves.
 const HALF_RING: f64 = 0.125;
 
-/// Reliability cut-off of a tip of radius R: the wavelength \[m\] down to which the rms mean curvature of a surface is below 1/R.
+/// Reliability cut-off of a tip of radius R: the wavelength \[m\] down to which the rms mean curvature of a
+/// surface is below 1/R.
 ///
-/// The rms mean curvature is half of the rms Laplacian. It is summed up from the longest wavelength, over the spectrum of the square of side `length_m`.
-/// Sanner et al. compare the extreme curvature at a scale with 1/(2R). Nothing if the curvature of all wavelengths together is below 1/R.
+/// The rms mean curvature is half of the rms Laplacian. It is summed up from the longest wavelength, over the
+/// spectrum of the square of side `length_m`. Sanner et al. compare the extreme curvature at a scale with
+/// 1/(2R). Nothing if the curvature of all wavelengths together is below 1/R.
 #[must_use]
 pub fn reliability_cutoff(rings: &[Ring], length_m: f64, radius_m: f64) -> Option<f64> {
     let lowest = TAU / length_m;
@@ -41,10 +44,12 @@ const ROUNDED: f64 = 0.1;
 /// Maximum number of points from which quantiles are taken.
 const SAMPLE: usize = 1 << 20;
 
-/// Curvature of the sharpest summits over that of the sharpest valleys, of a surface that is rounded nearly everywhere; nothing for other surfaces.
+/// Curvature of the sharpest summits over that of the sharpest valleys, of a surface that is rounded nearly
+/// everywhere; nothing for other surfaces.
 ///
-/// These are the 1 % quantiles of the Laplacian, by finite differences over `step` points of spacings `spacing_m` along rows and columns.
-/// A surface is rounded if the median Laplacian is below -0.1 of its rms. A tip rounds summits to its own radius and leaves valleys as cusps.
+/// These are the 1 % quantiles of the Laplacian, by finite differences over
+/// `step` points of spacings `spacing_m` along rows and columns. A surface is rounded if the median Laplacian
+/// is below -0.1 of its rms. A tip rounds summits to its own radius and leaves valleys as cusps.
 #[must_use]
 pub fn curvature_ratio(heights_m: ArrayView2<'_, f64>, spacing_m: [f64; 2], step: usize) -> Option<f64> {
     let (rows, columns) = heights_m.dim();

@@ -1,9 +1,10 @@
 //! Approximate adhesive contact from the load and the area of adhesionless contact.
 //!
 //! # Equations
-//! Adhesionless contact at the penetration `δ1` has the load `P1`, the area `A` and the stiffness `S = dP1/dδ1`.
-//! Withdraw the surfaces by `x` at a constant contact area. The load falls to `P = P1 − S x` at the penetration `δ = δ1 − x`.
-//! The energy release rate is `½ x² dS/dA`. Griffith's condition, that it is equal to Δγ, gives
+//! Adhesionless contact at the penetration `δ1` has the load `P1`, the area `A` and the stiffness `S =
+//! dP1/dδ1`. Withdraw the surfaces by `x` at a constant contact area. The load falls to `P = P1 − S x` at the
+//! penetration `δ = δ1 − x`. The energy release rate is `½ x² dS/dA`. Griffith's condition, that it is equal
+//! to Δγ, gives
 //!
 //! ```text
 //! x = sqrt(2Δγ/(dS/dA)),   δ = δ1 − x,   P = P1 − S x
@@ -43,8 +44,11 @@ pub fn adhesive_curve(curve: &[CurvePoint], work_length_m: f64) -> Vec<CurvePoin
         .filter(|pair| pair[1].penetration_m > pair[0].penetration_m)
         .map(|pair| {
             let middle = |value: fn(&CurvePoint) -> f64| 0.5 * (value(&pair[0]) + value(&pair[1]));
-            let point =
-                CurvePoint { penetration_m: middle(|p| p.penetration_m), load_m2: middle(|p| p.load_m2), area_m2: middle(|p| p.area_m2) };
+            let point = CurvePoint {
+                penetration_m: middle(|p| p.penetration_m),
+                load_m2: middle(|p| p.load_m2),
+                area_m2: middle(|p| p.area_m2),
+            };
             (point, (pair[1].load_m2 - pair[0].load_m2) / (pair[1].penetration_m - pair[0].penetration_m))
         })
         .collect();
@@ -103,7 +107,9 @@ pub fn curve_loop(curve: &[CurvePoint], max_load_m2: f64) -> Option<CurveLoop> {
     let branch = &curve[start..=end];
     let piece = |pair: &[CurvePoint]| {
         let [from, to] = [pair[0], pair[1]];
-        let share = ((0.0_f64.min(to.penetration_m) - from.penetration_m) / (to.penetration_m - from.penetration_m)).clamp(0.0, 1.0);
+        let share = ((0.0_f64.min(to.penetration_m) - from.penetration_m)
+            / (to.penetration_m - from.penetration_m))
+            .clamp(0.0, 1.0);
         let last = from.load_m2 + share * (to.load_m2 - from.load_m2);
         -0.5 * (from.load_m2 + last) * share * (to.penetration_m - from.penetration_m)
     };

@@ -11,8 +11,8 @@
 //! | shortest wavelength \[m\] | [`shortest_wavelength`], or `L/ζ` | – |
 //!
 //! # Of a cycle
-//! [`CycleEstimates`] adds the material, [`CycleEstimates::at_load`] the load. `A0 = L²` is the nominal area \[m²\], Δγ the
-//! work of adhesion \[J/m²\], E* the reduced modulus \[Pa\].
+//! [`CycleEstimates`] adds the material, [`CycleEstimates::at_load`] the load. `A0 = L²` is the nominal area
+//! \[m²\], Δγ the work of adhesion \[J/m²\], E* the reduced modulus \[Pa\].
 //!
 //! | estimate | formula | source |
 //! |---|---|---|
@@ -30,8 +30,8 @@
 use super::approximate_jkr::{CurveLoop, CurvePoint, adhesive_curve, curve_loop};
 use super::flattening::{Flattening, RelativeFlattening, flattening, shortest_wavelength};
 use super::{
-    adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed, fuller_tabor, pinning_loss,
-    sticky_line,
+    adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed,
+    fuller_tabor, pinning_loss, sticky_line,
 };
 use crate::PhysicsError;
 use crate::jkr::{Asperity, MIN_TABOR};
@@ -79,7 +79,12 @@ pub struct SurfaceEstimates {
 impl SurfaceEstimates {
     /// Estimates of a generated surface from its spectrum and seed.
     #[must_use]
-    pub fn of_generated(spectrum: &Spectrum, seed: &[u8; 32], roughness: Roughness, summit_count: usize) -> Self {
+    pub fn of_generated(
+        spectrum: &Spectrum,
+        seed: &[u8; 32],
+        roughness: Roughness,
+        summit_count: usize,
+    ) -> Self {
         Self {
             length_m: spectrum.length_m,
             roughness,
@@ -94,7 +99,12 @@ impl SurfaceEstimates {
     ///
     /// # Errors
     /// Too little memory.
-    pub fn of_measured(map: SquareMap<'_>, cut_off_m: f64, roughness: Roughness, summit_count: usize) -> Result<Self, PhysicsError> {
+    pub fn of_measured(
+        map: SquareMap<'_>,
+        cut_off_m: f64,
+        roughness: Roughness,
+        summit_count: usize,
+    ) -> Result<Self, PhysicsError> {
         let shortest_wavelength_m = shortest_wavelength(map, cut_off_m)?;
         let flattening = RelativeFlattening::measured(map, shortest_wavelength_m)?;
         let (length_m, cut_off_m) = (map.length_m, Some(cut_off_m));
@@ -137,7 +147,8 @@ pub struct Ratios {
 }
 
 impl Ratios {
-    /// Ratios of a material: with the target spectrum of a generated surface, and with the flattening of the realised one.
+    /// Ratios of a material: with the target spectrum of a generated surface, and with the flattening of the
+    /// realised one.
     #[must_use]
     pub fn of(target: Option<&Spectrum>, realised: Option<&RelativeFlattening>, material: &Material) -> Self {
         let adhesion = material.work_of_adhesion_j_m2;
@@ -193,14 +204,19 @@ impl Tabor {
 /// Deng and Kesari's dissipated energy at `A = A0` \[J\], by the uncorrected equations in use.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DengKesari {
-    /// Corrected, Eq A2 as printed, Eq A3 as printed, both as printed. Missing where the printed Eq A2 has no integral.
+    /// Corrected, Eq A2 as printed, Eq A3 as printed, both as printed. Missing where the printed Eq A2 has no
+    /// integral.
     pub nominal_j: [Option<f64>; 4],
 }
 
 impl DengKesari {
     /// Equations of the four values.
-    pub const ERRATA: [Slips; 4] =
-        [Slips::NONE, Slips { a2: true, ..Slips::NONE }, Slips { a3: true, ..Slips::NONE }, Slips { a2: true, a3: true, ..Slips::NONE }];
+    pub const ERRATA: [Slips; 4] = [
+        Slips::NONE,
+        Slips { a2: true, ..Slips::NONE },
+        Slips { a3: true, ..Slips::NONE },
+        Slips { a2: true, a3: true, ..Slips::NONE },
+    ];
 
     fn of(moments: &Moments, material: &Material, area_m2: f64) -> Result<Self, PhysicsError> {
         let mut nominal_j = [None; 4];
@@ -222,7 +238,8 @@ pub struct CycleEstimates {
     pub tabor: Option<Tabor>,
     /// Fuller–Tabor parameter; nothing for fewer than two asperities and without adhesion.
     pub fuller_tabor: Option<f64>,
-    /// Deng and Kesari's estimate with the moments of the continuous spectrum; nothing for a measured surface.
+    /// Deng and Kesari's estimate with the moments of the continuous spectrum; nothing for a measured
+    /// surface.
     pub deng_kesari: Option<DengKesari>,
     /// Deng and Kesari's estimate with the moments of the realised spectrum.
     pub deng_kesari_realised: DengKesari,
@@ -240,8 +257,8 @@ pub struct CycleEstimates {
 impl CycleEstimates {
     /// Estimates of a cycle with a material on a surface with these asperities.
     ///
-    /// `target` is the spectrum of a generated surface. `adhesionless` is the curve of the same surface without adhesion; empty if
-    /// it is unknown.
+    /// `target` is the spectrum of a generated surface. `adhesionless` is the curve of the same surface
+    /// without adhesion; empty if it is unknown.
     ///
     /// # Errors
     /// A material or radius that an asperity refuses; moments that Deng and Kesari's estimate refuses.
@@ -272,7 +289,8 @@ impl CycleEstimates {
         })
     }
 
-    /// Energy that asperities, by their numbers, dissipate in isolation \[J\]. Other numbers, as of merged contacts, do not count.
+    /// Energy that asperities, by their numbers, dissipate in isolation \[J\]. Other numbers, as of merged
+    /// contacts, do not count.
     #[must_use]
     pub fn isolated_loss_j(&self, numbers: &[usize]) -> f64 {
         numbers.iter().filter_map(|number| self.asperity_loss_j.get(*number)).sum()

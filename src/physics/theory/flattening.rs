@@ -1,6 +1,7 @@
 //! Elastic energy of flattening the roughness, and range of the asperity model.
 //!
-//! If flattening costs less than adhesion gains, the half-space conforms to the roughness and contact spots are no longer separate.
+//! If flattening costs less than adhesion gains, the half-space conforms to the roughness and contact spots
+//! are no longer separate.
 
 use crate::PhysicsError;
 use crate::surface::SquareMap;
@@ -15,10 +16,10 @@ use std::f64::consts::{PI, TAU};
 
 /// Elastic energy per nominal area of flattening the roughness of a surface completely.
 ///
-/// A mode of wavevector k and amplitude `c_k` is flattened by a pressure of amplitude `(E*/2) k c_k`.
-/// The stored energy is half of pressure times displacement: `U/A0 = (E*/4) Σ_k k|c_k|²` over all modes of both signs,
-/// or `(E*/4) ∫ q C(q) d²q` of a spectrum.
-/// With the reduced modulus `E*` \[Pa\], `k` and `q` \[1/m\], `c_k` \[m\], `C` \[m⁴\].
+/// A mode of wavevector k and amplitude `c_k` is flattened by a pressure of amplitude `(E*/2) k
+/// c_k`. The stored energy is half of pressure times displacement: `U/A0 = (E*/4) Σ_k
+/// k|c_k|²` over all modes of both signs, or `(E*/4) ∫ q C(q)
+/// d²q` of a spectrum. With the reduced modulus `E*` \[Pa\], `k` and `q` \[1/m\], `c_k` \[m\], `C` \[m⁴\].
 /// Persson & Tosatti, J. Chem. Phys. 115, 5597 (2001).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flattening {
@@ -53,7 +54,8 @@ impl Flattening {
 #[must_use]
 pub fn flattening(spectrum: &Spectrum, contact_modulus_pa: f64) -> Flattening {
     let zeta = f64::from(spectrum.magnification);
-    let prefactor = 0.5 * PI * contact_modulus_pa * spectrum.prefactor() * spectrum.lowest_wavenumber().powi(3);
+    let prefactor =
+        0.5 * PI * contact_modulus_pa * spectrum.prefactor() * spectrum.lowest_wavenumber().powi(3);
     let exponent = 1.0 - 2.0 * spectrum.hurst;
     let band = |from: f64| {
         let span = (zeta / from).ln();
@@ -90,7 +92,11 @@ impl RelativeFlattening {
             // In integers the edge of the octave is exact, as is that of the band.
             [wavenumber, if 4 * mode_squared >= edge { wavenumber } else { 0.0 }]
         });
-        Self { wavenumber_1_m: spectrum.lowest_wavenumber(), whole_m2: 0.25 * whole, octave_m2: 0.25 * octave }
+        Self {
+            wavenumber_1_m: spectrum.lowest_wavenumber(),
+            whole_m2: 0.25 * whole,
+            octave_m2: 0.25 * octave,
+        }
     }
 
     /// Flattening of heights on a square with the shortest wavelength \[m\], with q_u = 1/m.
@@ -120,7 +126,8 @@ impl RelativeFlattening {
     }
 }
 
-/// Flattening energies of the realised spectrum of a seed, with E* \[Pa\]. See [`RelativeFlattening::realised`].
+/// Flattening energies of the realised spectrum of a seed, with E* \[Pa\]. See
+/// [`RelativeFlattening::realised`].
 #[must_use]
 pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus_pa: f64) -> Flattening {
     RelativeFlattening::realised(spectrum, seed).energies(contact_modulus_pa)
@@ -128,9 +135,9 @@ pub fn realised_flattening(spectrum: &Spectrum, seed: &[u8; 32], contact_modulus
 
 /// Shortest wavelength of heights on a square after a low-pass filter with a cut-off \[m\].
 ///
-/// It is the cut-off if the octave above it, with everything below, holds [`MIN_CURVATURE_SHARE`] of the mean square Laplacian.
-/// A field without such short waves has one that is longer by a power of two.
-/// For a field that is not periodic the spectrum is that of the Laplacian under a Hann window.
+/// It is the cut-off if the octave above it, with everything below, holds [`MIN_CURVATURE_SHARE`] of the mean
+/// square Laplacian. A field without such short waves has one that is longer by a power of two. For a field
+/// that is not periodic the spectrum is that of the Laplacian under a Hann window.
 ///
 /// # Errors
 /// Too little memory.
@@ -144,12 +151,15 @@ pub fn shortest_wavelength(map: SquareMap<'_>, cut_off_m: f64) -> Result<f64, Ph
     let points = (cut_off_m * n / length_m).max(MIN_POINTS);
     let (field, exponent) = match edges {
         Edges::Periodic => (Field::of(heights_m, length_m, Edges::Periodic)?, 4),
-        Edges::Open => (Field::of(windowed(laplacian(heights_m, points)?.view())?.view(), length_m, Edges::Periodic)?, 0),
+        Edges::Open => {
+            (Field::of(windowed(laplacian(heights_m, points)?.view())?.view(), length_m, Edges::Periodic)?, 0)
+        }
     };
     let mut shortest = cut_off_m;
     while 2.0 * shortest < length_m {
         let edge = TAU / shortest;
-        let [octave, whole] = field.weighted(|q| [if 2.0 * q >= edge { q.powi(exponent) } else { 0.0 }, q.powi(exponent)]);
+        let [octave, whole] =
+            field.weighted(|q| [if 2.0 * q >= edge { q.powi(exponent) } else { 0.0 }, q.powi(exponent)]);
         if octave >= MIN_CURVATURE_SHARE * whole {
             break;
         }
@@ -161,10 +171,15 @@ pub fn shortest_wavelength(map: SquareMap<'_>, cut_off_m: f64) -> Result<f64, Ph
 /// Points per cut-off wavelength for which derivatives are defined.
 const MIN_POINTS: f64 = 2.5;
 
-/// Flattening energies of heights on a square, with the shortest wavelength and E* \[Pa\]. See [`RelativeFlattening::measured`].
+/// Flattening energies of heights on a square, with the shortest wavelength and E* \[Pa\]. See
+/// [`RelativeFlattening::measured`].
 ///
 /// # Errors
 /// Too little memory.
-pub fn measured_flattening(map: SquareMap<'_>, shortest_wavelength_m: f64, contact_modulus_pa: f64) -> Result<Flattening, PhysicsError> {
+pub fn measured_flattening(
+    map: SquareMap<'_>,
+    shortest_wavelength_m: f64,
+    contact_modulus_pa: f64,
+) -> Result<Flattening, PhysicsError> {
     Ok(RelativeFlattening::measured(map, shortest_wavelength_m)?.energies(contact_modulus_pa))
 }

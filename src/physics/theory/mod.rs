@@ -3,8 +3,9 @@
 //! Dissipated energy from Nayak's statistics of summits (Deng and Kesari) and in full contact (Dalvi et al.),
 //! crack-front pinning, contact area without adhesion, and the adhesion parameter of Fuller and Tabor.
 //!
-//! Not included, since their formulae could not be confirmed at their sources: the bearing-area model (Ciavarella 2018)
-//! and the criterion of Pastewka and Robbins (2014). Persson and Tosatti's criterion is in [`flattening`].
+//! Not included, since their formulae could not be confirmed at their sources: the bearing-area model
+//! (Ciavarella 2018) and the criterion of Pastewka and Robbins (2014). Persson and Tosatti's criterion is in
+//! [`flattening`].
 
 pub mod approximate_jkr;
 pub mod estimates;
@@ -24,7 +25,8 @@ pub(super) const CONSTANTS: &[Constant] =
 
 /// Nayak's density of the reduced summit curvature in the limit used by Deng and Kesari. Eq A2.
 ///
-/// `p_k(t) = sqrt(3/(4π)) (t² − 2 + 2e^(−t²/2)) e^(−t²/4)` for `t < 0`, with `t = −sqrt(3/m4) k_m`. It integrates to 1.
+/// `p_k(t) = sqrt(3/(4π)) (t² − 2 + 2e^(−t²/2)) e^(−t²/4)` for `t < 0`, with `t = −sqrt(3/m4) k_m`. It
+/// integrates to 1.
 ///
 /// # Deviations
 /// The exponent printed in Eq A2 is `8(C1² − C2²)t²/(16C1)`.
@@ -43,9 +45,9 @@ const NAYAK_DECAY: f64 = 0.25;
 /// With `α = m0 m4/m2² ≥ 3/2` (dimensionless) it is `(8C1² − C2²)/(16C1)` with
 /// `C1 = α/(2α − 3)` and `C2 = C1 sqrt(12/α)`, which is ¼ for every `α`.
 ///
-/// With Eq A2 as printed it is `8(C1² − C2²)/(16C1) = (α − 12)/(2(2α − 3))`, which is below ¼ and approaches it for large `α`.
-/// The density then integrates to `(√3/2)(c^(−3/2)/4 − c^(−1/2) + (c + ½)^(−1/2)) > 1`.
-/// For `α ≤ 12` the integral diverges, and the result is `None`.
+/// With Eq A2 as printed it is `8(C1² − C2²)/(16C1) = (α − 12)/(2(2α − 3))`, which is below ¼ and approaches
+/// it for large `α`. The density then integrates to `(√3/2)(c^(−3/2)/4 − c^(−1/2) + (c + ½)^(−1/2)) >
+/// 1`. For `α ≤ 12` the integral diverges, and the result is `None`.
 #[must_use]
 pub fn curvature_decay(nayak_parameter: f64, slips: Slips) -> Option<f64> {
     if !slips.a2 {
@@ -66,7 +68,9 @@ pub fn curvature_density_as_printed(t: f64, decay: f64) -> f64 {
     let half = 0.5 * t * t;
     // t² − 2 + 2e^(−t²/2) = 2(h + expm1(−h)), h = t²/2: the printed form suffers from cancellation near 0.
     let bracket = if half < 1e-2 {
-        half * half * (1.0 - half / 3.0 + half * half / 12.0 - half.powi(3) / 60.0 + half.powi(4) / 360.0 - half.powi(5) / 2520.0)
+        half * half
+            * (1.0 - half / 3.0 + half * half / 12.0 - half.powi(3) / 60.0 + half.powi(4) / 360.0
+                - half.powi(5) / 2520.0)
     } else {
         2.0 * (half + (-half).exp_m1())
     };
@@ -84,26 +88,35 @@ pub fn curvature_density_as_printed(t: f64, decay: f64) -> f64 {
 ///
 /// # Errors
 /// m4 must be positive and finite, and so must the tip radius.
-pub fn mean_loop_loss(moments: &Moments, material: &Material, tip_radius_m: Option<f64>) -> Result<f64, PhysicsError> {
+pub fn mean_loop_loss(
+    moments: &Moments,
+    material: &Material,
+    tip_radius_m: Option<f64>,
+) -> Result<f64, PhysicsError> {
     mean_loop_loss_as_printed(moments, material, tip_radius_m, Slips::NONE)
 }
 
 /// [`mean_loop_loss`] with the printed Eq A2 and the printed curvature below Eq A3, if `slips` contains them.
 ///
-/// The printed `1/R(t) = 1/R_tip − sqrt(m4/3t)` is read as `1/R_tip + sqrt((m4/3)|t|)`: the root extends one symbol too far.
-/// The same page writes `h''_rms = sqrt(8/3m4)` for `sqrt((8/3)m4)`, so a slash applies to one symbol only.
-/// As `t < 0`, no reading has a root without `|t|`.
+/// The printed `1/R(t) = 1/R_tip − sqrt(m4/3t)` is read as `1/R_tip + sqrt((m4/3)|t|)`: the root extends one
+/// symbol too far. The same page writes `h''_rms = sqrt(8/3m4)` for
+/// `sqrt((8/3)m4)`, so a slash applies to one symbol only. As `t < 0`, no reading has a root without `|t|`.
 ///
 /// # Errors
-/// As [`mean_loop_loss`]. With Eq A2 as printed the bandwidth parameter must exceed 12 too, since the mean diverges otherwise.
+/// As [`mean_loop_loss`]. With Eq A2 as printed the bandwidth parameter must exceed 12 too, since the mean
+/// diverges otherwise.
 pub fn mean_loop_loss_as_printed(
     moments: &Moments,
     material: &Material,
     tip_radius_m: Option<f64>,
     slips: Slips,
 ) -> Result<f64, PhysicsError> {
-    let refused =
-        |quantity, value, allowed| PhysicsError::Domain { action: "Deng and Kesari's mean loss (Eq A3)", quantity, value, allowed };
+    let refused = |quantity, value, allowed| PhysicsError::Domain {
+        action: "Deng and Kesari's mean loss (Eq A3)",
+        quantity,
+        value,
+        allowed,
+    };
     let domain = |quantity, value| refused(quantity, value, "a positive, finite number");
     if !(moments.m4_1_m2 > 0.0 && moments.m4_1_m2.is_finite()) {
         return Err(domain("m4 [1/m2]", moments.m4_1_m2));
@@ -129,7 +142,11 @@ pub fn mean_loop_loss_as_printed(
         let t = y.powi(3);
         let reduced = if slips.a3 { t.sqrt() } else { t };
         let size = tip_curvature + unit * reduced;
-        if y == 0.0 { 0.0 } else { curvature_density_as_printed(-t, decay) * size.powf(-4.0 / 3.0) * 3.0 * y * y }
+        if y == 0.0 {
+            0.0
+        } else {
+            curvature_density_as_printed(-t, decay) * size.powf(-4.0 / 3.0) * 3.0 * y * y
+        }
     };
     Ok(prefactor * gauss_panels(integrand, 0.0, most, panels))
 }
@@ -142,7 +159,12 @@ fn gauss_panels(f: impl Fn(f64) -> f64, from: f64, to: f64, panels: usize) -> f6
     (0..panels)
         .map(|k| {
             let middle = from + (2 * k + 1) as f64 * half;
-            let pairs: f64 = nodes.iter().zip(&weights).skip(1).map(|(x, w)| w * (f(middle - half * x) + f(middle + half * x))).sum();
+            let pairs: f64 = nodes
+                .iter()
+                .zip(&weights)
+                .skip(1)
+                .map(|(x, w)| w * (f(middle - half * x) + f(middle + half * x)))
+                .sum();
             half * (weights[0] * f(middle) + pairs)
         })
         .sum()
@@ -161,7 +183,12 @@ pub fn deng_kesari_loss(moments: &Moments, material: &Material, area_m2: f64) ->
 ///
 /// # Errors
 /// As [`mean_loop_loss_as_printed`].
-pub fn deng_kesari_loss_as_printed(moments: &Moments, material: &Material, area_m2: f64, slips: Slips) -> Result<f64, PhysicsError> {
+pub fn deng_kesari_loss_as_printed(
+    moments: &Moments,
+    material: &Material,
+    area_m2: f64,
+    slips: Slips,
+) -> Result<f64, PhysicsError> {
     Ok(moments.summit_density_1_m2() * area_m2 * mean_loop_loss_as_printed(moments, material, None, slips)?)
 }
 
@@ -182,15 +209,16 @@ const PINNING: f64 = 1.35;
 
 /// Energy dissipated by crack-front pinning, `2 k e_el A` with k = 1.35 \[J\].
 ///
-/// `A` is the contact area \[m²\], and `e_el` \[J/m²\] is the elastic energy per area of flattening the roughness. `None` if `k e_el ≥ Δγ/2`.
+/// `A` is the contact area \[m²\], and `e_el` \[J/m²\] is the elastic energy per area of flattening the
+/// roughness. `None` if `k e_el ≥ Δγ/2`.
 ///
-/// Roughness makes the work of adhesion along a contact line random, with the standard deviation `2 sqrt(Δγ e_el)`.
-/// The line is elastic, with a stiffness that decreases with the wavelength.
-/// Collective pinning changes the apparent work of adhesion in proportion to the variance.
-/// An advancing contact has `Δγ − k e_el`, a receding one `Δγ + k e_el`.
-/// The proportionality is from Sanner, Kumar, Dhinojwala, Jacobs and Pastewka, Sci. Adv. 10:eadl1277 (2024).
-/// The prefactor is from our simulations: lines of 512 to 1024 points in weak fields, driven slowly, with H = 0.8, gave 1.2 to 1.5.
-/// One connected contact with weak roughness is assumed.
+/// Roughness makes the work of adhesion along a contact line random, with the standard deviation
+/// `2 sqrt(Δγ e_el)`. The line is elastic, with a stiffness that decreases with the wavelength. Collective
+/// pinning changes the apparent work of adhesion in proportion to the variance. An advancing contact has
+/// `Δγ − k e_el`, a receding one `Δγ + k e_el`. The proportionality is from Sanner, Kumar, Dhinojwala, Jacobs
+/// and Pastewka, Sci. Adv. 10:eadl1277 (2024). The prefactor is from our simulations: lines of 512 to 1024
+/// points in weak fields, driven slowly, with H = 0.8, gave 1.2 to 1.5. One connected contact with weak
+/// roughness is assumed.
 #[must_use]
 pub fn pinning_loss(material: &Material, elastic_energy_j_m2: f64, area_m2: f64) -> Option<f64> {
     let shift = PINNING * elastic_energy_j_m2;
@@ -208,12 +236,13 @@ pub fn sticky_line(persson_tosatti: f64) -> f64 {
 
 /// Contact area over A0 without adhesion, `erf(√2 p/(E* h'_rms))`.
 ///
-/// `load` is `p/E* = F/(E* A0) ≥ 0` and `rms_slope` the rms gradient `h'_rms` of the surface (both dimensionless).
-/// Persson, J. Chem. Phys. 115:3840 (2001).
+/// `load` is `p/E* = F/(E* A0) ≥ 0` and `rms_slope` the rms gradient `h'_rms` of the surface (both
+/// dimensionless). Persson, J. Chem. Phys. 115:3840 (2001).
 ///
-/// At full contact the pressure has the variance `E*²h'²_rms/4`, since a mode of amplitude c and wavevector k is flattened by
-/// `(E*/2) k c`. In Persson's theory pressures spread by diffusion up to that variance with an absorbing wall at zero.
-/// The remaining area in contact is `erf(p/(√2 E* h'_rms/2))`.
+/// At full contact the pressure has the variance
+/// `E*²h'²_rms/4`, since a mode of amplitude c and wavevector k is flattened by `(E*/2) k
+/// c`. In Persson's theory pressures spread by diffusion up to that variance with an absorbing wall at zero. The remaining area in contact is `erf(p/(√2
+/// E* h'_rms/2))`.
 #[must_use]
 pub fn adhesionless_area(load: f64, rms_slope: f64) -> f64 {
     libm::erf(std::f64::consts::SQRT_2 * load / rms_slope)
@@ -221,9 +250,9 @@ pub fn adhesionless_area(load: f64, rms_slope: f64) -> f64 {
 
 /// Contact area over A0 without adhesion at small loads, `κ p/(E* h'_rms)` with κ = 2.
 ///
-/// The value of boundary-element solutions lies between `√(8/π)` of Persson's theory and `√(2π)` of asperities without
-/// elastic interaction (Bush, Gibson and Thomas, Wear 35:87, 1975).
-/// Hyun, Pei, Molinari and Robbins, Phys. Rev. E 70:026117 (2004).
+/// The value of boundary-element solutions lies between `√(8/π)` of Persson's theory and `√(2π)` of
+/// asperities without elastic interaction (Bush, Gibson and Thomas, Wear 35:87, 1975). Hyun, Pei, Molinari
+/// and Robbins, Phys. Rev. E 70:026117 (2004).
 #[must_use]
 pub fn adhesionless_area_small(load: f64, rms_slope: f64) -> f64 {
     2.0 * load / rms_slope
@@ -231,10 +260,11 @@ pub fn adhesionless_area_small(load: f64, rms_slope: f64) -> f64 {
 
 /// Fuller–Tabor adhesion parameter `E* σ^(3/2)/(R^(1/2) Δγ)` (dimensionless).
 ///
-/// σ \[m\] is the standard deviation of the summit heights and R \[m\] their mean radius.
-/// It is the ratio of the compressive load of high asperities to the tensile load of low ones. Above about 10 adhesion vanishes.
+/// σ \[m\] is the standard deviation of the summit heights and R \[m\] their mean radius. It is the ratio of
+/// the compressive load of high asperities to the tensile load of low ones. Above about 10 adhesion vanishes.
 /// Fuller and Tabor, Proc. R. Soc. A 345:327 (1975).
 #[must_use]
 pub fn fuller_tabor(material: &Material, height_sd_m: f64, mean_radius_m: f64) -> f64 {
-    material.contact_modulus_pa * height_sd_m.powf(1.5) / (mean_radius_m.sqrt() * material.work_of_adhesion_j_m2)
+    material.contact_modulus_pa * height_sd_m.powf(1.5)
+        / (mean_radius_m.sqrt() * material.work_of_adhesion_j_m2)
 }

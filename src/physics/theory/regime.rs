@@ -16,7 +16,8 @@ pub const LARGE_AREA: f64 = 0.3;
 
 /// Contact area over A0 without adhesion at a load: `A/A0 = erf(√2 F/(E* A0 h'))`.
 ///
-/// With the load over `E* A0` and the rms gradient `h'`. Persson, J. Chem. Phys. 115, 3840 (2001). Adhesion enlarges it.
+/// With the load over `E* A0` and the rms gradient `h'`. Persson, J. Chem. Phys. 115, 3840 (2001). Adhesion
+/// enlarges it.
 #[must_use]
 pub fn loaded_area(load: f64, rms_slope: f64) -> f64 {
     if rms_slope > 0.0 { libm::erf(SQRT_2 * load / rms_slope) } else { 1.0 }
@@ -34,7 +35,8 @@ pub enum Regime {
 }
 
 impl Regime {
-    /// Regime at the ratios `U_el/Δγ` of all roughness and `U_1/Δγ` of the shortest octave, both infinite without adhesion.
+    /// Regime at the ratios `U_el/Δγ` of all roughness and `U_1/Δγ` of the shortest octave, both infinite
+    /// without adhesion.
     ///
     /// A measured surface without short wavelengths has a second ratio of 0, which says nothing.
     #[must_use]
@@ -48,13 +50,18 @@ impl Regime {
         }
     }
 
-    /// Regime expected of a surface before its contact is computed, at a work of adhesion \[J/m²\] and a load over `E* A0`.
+    /// Regime expected of a surface before its contact is computed, at a work of adhesion \[J/m²\] and a load
+    /// over `E* A0`.
     ///
-    /// It follows from the energies of flattening, and from the area without adhesion at the rms gradient `h'`, [`loaded_area`].
+    /// It follows from the energies of flattening, and from the area without adhesion at the rms gradient
+    /// `h'`, [`loaded_area`].
     #[must_use]
     pub fn expected(energies: &Flattening, work_of_adhesion_j_m2: f64, load: f64, rms_slope: f64) -> Self {
         let of_adhesion = if work_of_adhesion_j_m2 > 0.0 {
-            Self::of(energies.persson_tosatti(work_of_adhesion_j_m2), energies.conformity(work_of_adhesion_j_m2))
+            Self::of(
+                energies.persson_tosatti(work_of_adhesion_j_m2),
+                energies.conformity(work_of_adhesion_j_m2),
+            )
         } else {
             Self::Separate
         };
@@ -86,24 +93,33 @@ impl Regime {
         }
     }
 
-    /// Expected behaviour of the contact, and the method to use instead of a given one outside its range, as a sentence without its full stop.
+    /// Expected behaviour of the contact, and the method to use instead of a given one outside its range, as
+    /// a sentence without its full stop.
     #[must_use]
     pub fn expectation(self, method: Method) -> &'static str {
         match (self, method) {
-            (Self::Separate, Method::Asperities) => "Separate contact spots, within the range of the asperity model",
+            (Self::Separate, Method::Asperities) => {
+                "Separate contact spots, within the range of the asperity model"
+            }
             (Self::Separate, _) => "Separate contact spots; asperities are a faster alternative",
-            (Self::NearFullContact, Method::Asperities) => "Spots grow together: the asperity model lacks area; use boundary elements",
+            (Self::NearFullContact, Method::Asperities) => {
+                "Spots grow together: the asperity model lacks area; use boundary elements"
+            }
             (Self::NearFullContact, _) => "Spots grow together; boundary elements resolve them",
-            (Self::Flattened, Method::Asperities) => "Adhesion alone closes the contact: the asperity model fails; use boundary elements",
+            (Self::Flattened, Method::Asperities) => {
+                "Adhesion alone closes the contact: the asperity model fails; use boundary elements"
+            }
             (Self::Flattened, _) => "Adhesion alone closes the contact: boundary elements reach full contact",
         }
     }
 }
 
-/// Effective work of adhesion of a flattened surface \[J/m²\]: `Δγ (1 + h'²/2) − U_el`; nothing unless `U_el < Δγ`.
+/// Effective work of adhesion of a flattened surface \[J/m²\]: `Δγ (1 + h'²/2) − U_el`; nothing unless
+/// `U_el < Δγ`.
 ///
-/// With the work of adhesion Δγ, the rms gradient `h'` and the elastic energy per area `U_el` of flattening all roughness \[J/m²\].
-/// The true area exceeds the nominal one by the fraction `h'²/2`. Persson & Tosatti, J. Chem. Phys. 115, 5597 (2001).
+/// With the work of adhesion Δγ, the rms gradient `h'` and the elastic energy per area `U_el` of flattening
+/// all roughness \[J/m²\]. The true area exceeds the nominal one by the fraction `h'²/2`. Persson & Tosatti,
+/// J. Chem. Phys. 115, 5597 (2001).
 #[must_use]
 pub fn effective_adhesion(work_of_adhesion_j_m2: f64, rms_slope: f64, flattening_j_m2: f64) -> Option<f64> {
     let effective = work_of_adhesion_j_m2 * (1.0 + 0.5 * rms_slope * rms_slope) - flattening_j_m2;

@@ -10,7 +10,8 @@ pub type Column<'py> = PyReadonlyArray1<'py, f64>;
 /// One result for each element.
 pub type Values<'py> = Bound<'py, PyArray1<f64>>;
 
-/// Elements after which Ctrl-C is looked for. Fewer than a tenth of them are not worth letting other threads in.
+/// Elements after which Ctrl-C is looked for. Fewer than a tenth of them are not worth letting other threads
+/// in.
 const STRETCH: usize = 1 << 14;
 
 /// `evaluate` of every element; where an argument is NaN, so is the result, and nothing is evaluated.
@@ -51,14 +52,24 @@ fn in_stretches<'py, const N: usize, const M: usize>(
     for (slice, column) in slices.iter_mut().zip(&columns) {
         *slice = column.as_slice()?;
     }
-    let count = slices.iter().map(|slice| slice.len()).reduce(|a, b| if a == 0 || b == 0 { 0 } else { a.max(b) }).unwrap_or(1);
+    let count = slices
+        .iter()
+        .map(|slice| slice.len())
+        .reduce(|a, b| if a == 0 || b == 0 { 0 } else { a.max(b) })
+        .unwrap_or(1);
     if let Some(strange) = slices.iter().map(|slice| slice.len()).find(|len| ![1, count].contains(len)) {
-        return Err(PyValueError::new_err(format!("columns of {strange} and {count} elements do not go together")));
+        return Err(PyValueError::new_err(format!(
+            "columns of {strange} and {count} elements do not go together"
+        )));
     }
     let at = |k: usize| slices.map(|slice| slice[if slice.len() == 1 { 0 } else { k }]);
     let one = |k: usize| {
         let arguments = at(k);
-        if arguments.iter().any(|value| value.is_nan()) { Ok([f64::NAN; M]) } else { evaluate(arguments).map_err(|error| (k, error)) }
+        if arguments.iter().any(|value| value.is_nan()) {
+            Ok([f64::NAN; M])
+        } else {
+            evaluate(arguments).map_err(|error| (k, error))
+        }
     };
     let mut results: [Vec<f64>; M] = std::array::from_fn(|_| Vec::with_capacity(count));
     let mut stretch = |range: std::ops::Range<usize>| -> Result<(), (usize, PhysicsError)> {
@@ -70,13 +81,18 @@ fn in_stretches<'py, const N: usize, const M: usize>(
         Ok(())
     };
     let told = |(k, error): (usize, PhysicsError)| {
-        let place = if count > 1 { format!("; this is element {k} of the arrays, counted along their rows") } else { String::new() };
+        let place = if count > 1 {
+            format!("; this is element {k} of the arrays, counted along their rows")
+        } else {
+            String::new()
+        };
         PyValueError::new_err(format!("{error}{place}"))
     };
     let mut from = 0;
     while from < count {
         let to = count.min(from + length);
-        if count > length / 10 { py.detach(|| stretch(from..to)) } else { stretch(from..to) }.map_err(told)?;
+        if count > length / 10 { py.detach(|| stretch(from..to)) } else { stretch(from..to) }
+            .map_err(told)?;
         py.check_signals()?;
         from = to;
     }
@@ -89,7 +105,13 @@ pub fn positive(action: &'static str, quantity: &'static str, value: f64) -> Res
 }
 
 /// `value`, if `holds`; else the sentence that says what is `allowed`.
-pub fn allowed(action: &'static str, quantity: &'static str, value: f64, holds: bool, allowed: &'static str) -> Result<f64, PhysicsError> {
+pub fn allowed(
+    action: &'static str,
+    quantity: &'static str,
+    value: f64,
+    holds: bool,
+    allowed: &'static str,
+) -> Result<f64, PhysicsError> {
     if holds { Ok(value) } else { Err(PhysicsError::Domain { action, quantity, value, allowed }) }
 }
 

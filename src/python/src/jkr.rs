@@ -9,7 +9,8 @@ use pyo3::prelude::*;
 /// The asperity of one element.
 fn asperity(radius_m: f64, modulus: f64, adhesion: f64, eq9: bool) -> Result<Asperity, PhysicsError> {
     // The range of attraction enters only where it is an argument.
-    let material = Material { contact_modulus_pa: modulus, work_of_adhesion_j_m2: adhesion, interaction_range_m: 1e-9 };
+    let material =
+        Material { contact_modulus_pa: modulus, work_of_adhesion_j_m2: adhesion, interaction_range_m: 1e-9 };
     let slips = Slips { eq9, ..Slips::NONE };
     Asperity::as_printed(radius_m, &material, slips)
 }

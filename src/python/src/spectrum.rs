@@ -1,4 +1,5 @@
-//! Spectrum of a self-affine surface, its moments, and the energy that flattens it: `surface::spectrum` and `theory::flattening` by name.
+//! Spectrum of a self-affine surface, its moments, and the energy that flattens it:
+//! `surface::spectrum` and `theory::flattening` by name.
 
 use crate::columns::{Column, Values, allowed, each, each_many, each_slow, positive};
 use hysteron_physics::PhysicsError;
@@ -16,13 +17,22 @@ const MOST_ROWS: u32 = 1 << 24;
 const WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// The spectrum of one element.
-fn spectrum([length, rms_height, hurst, magnification]: [f64; 4], normalization: Normalization) -> Result<Spectrum, PhysicsError> {
+fn spectrum(
+    [length, rms_height, hurst, magnification]: [f64; 4],
+    normalization: Normalization,
+) -> Result<Spectrum, PhysicsError> {
     let whole = magnification.fract() == 0.0 && (2.0..=f64::from(u32::MAX)).contains(&magnification);
     Ok(Spectrum {
         length_m: positive(ACTION, "the side of the square [m]", length)?,
         rms_height_m: positive(ACTION, "the rms height [m]", rms_height)?,
         hurst: allowed(ACTION, "the Hurst exponent", hurst, hurst > 0.0 && hurst <= 1.0, "above 0, up to 1")?,
-        magnification: allowed(ACTION, "the magnification", magnification, whole, "a whole number from 2 to 4294967295")? as u32,
+        magnification: allowed(
+            ACTION,
+            "the magnification",
+            magnification,
+            whole,
+            "a whole number from 2 to 4294967295",
+        )? as u32,
         normalization,
         amplitudes: Amplitudes::Fixed,
     })
@@ -41,11 +51,17 @@ fn density<'py>(
     hurst: Column<'py>,
     magnification: Column<'py>,
 ) -> PyResult<Values<'py>> {
-    each(py, [mode_squared, length_m, rms_height_m, hurst, magnification], |[mode, length, height, hurst, magnification]| {
-        let whole = mode.fract() == 0.0 && (0.0..=WHOLE).contains(&mode);
-        let mode = allowed(ACTION, "the squared mode number", mode, whole, "a whole number from 0 to 2^53")?;
-        Ok(spectrum([length, height, hurst, magnification], Normalization::Spectrum)?.density(mode as u64))
-    })
+    each(
+        py,
+        [mode_squared, length_m, rms_height_m, hurst, magnification],
+        |[mode, length, height, hurst, magnification]| {
+            let whole = mode.fract() == 0.0 && (0.0..=WHOLE).contains(&mode);
+            let mode =
+                allowed(ACTION, "the squared mode number", mode, whole, "a whole number from 0 to 2^53")?;
+            Ok(spectrum([length, height, hurst, magnification], Normalization::Spectrum)?
+                .density(mode as u64))
+        },
+    )
 }
 
 #[pyfunction]
@@ -56,7 +72,9 @@ fn prefactor<'py>(
     hurst: Column<'py>,
     magnification: Column<'py>,
 ) -> PyResult<Values<'py>> {
-    each(py, [length_m, rms_height_m, hurst, magnification], |of| Ok(spectrum(of, Normalization::Spectrum)?.prefactor()))
+    each(py, [length_m, rms_height_m, hurst, magnification], |of| {
+        Ok(spectrum(of, Normalization::Spectrum)?.prefactor())
+    })
 }
 
 #[pyfunction]
@@ -67,7 +85,9 @@ fn moments<'py>(
     hurst: Column<'py>,
     magnification: Column<'py>,
 ) -> PyResult<[Values<'py>; 3]> {
-    each_many(py, [length_m, rms_height_m, hurst, magnification], |of| Ok(parts(spectrum(of, Normalization::Spectrum)?.moments())))
+    each_many(py, [length_m, rms_height_m, hurst, magnification], |of| {
+        Ok(parts(spectrum(of, Normalization::Spectrum)?.moments()))
+    })
 }
 
 #[pyfunction]
@@ -83,17 +103,34 @@ fn lattice_moments<'py>(
     each_slow(py, [length_m, rms_height_m, hurst, magnification], |of| {
         let of = spectrum(of, normalization)?;
         let magnification = f64::from(of.magnification);
-        allowed(LATTICE, "the magnification", magnification, of.magnification <= MOST_ROWS, "at most 16777216")?;
+        allowed(
+            LATTICE,
+            "the magnification",
+            magnification,
+            of.magnification <= MOST_ROWS,
+            "at most 16777216",
+        )?;
         Ok(parts(of.lattice_moments()))
     })
 }
 
 /// Of moments: rms height, rms gradient, rms Laplacian, Nayak's parameter, density of summits.
 #[pyfunction]
-fn statistics<'py>(py: Python<'py>, m0_m2: Column<'py>, m2: Column<'py>, m4_1_m2: Column<'py>) -> PyResult<[Values<'py>; 5]> {
+fn statistics<'py>(
+    py: Python<'py>,
+    m0_m2: Column<'py>,
+    m2: Column<'py>,
+    m4_1_m2: Column<'py>,
+) -> PyResult<[Values<'py>; 5]> {
     each_many(py, [m0_m2, m2, m4_1_m2], |[m0_m2, m2, m4_1_m2]| {
         let of = Moments { m0_m2, m2, m4_1_m2 };
-        Ok([of.rms_height_m(), of.rms_slope(), of.rms_curvature_1_m(), of.nayak_parameter(), of.summit_density_1_m2()])
+        Ok([
+            of.rms_height_m(),
+            of.rms_slope(),
+            of.rms_curvature_1_m(),
+            of.nayak_parameter(),
+            of.summit_density_1_m2(),
+        ])
     })
 }
 

@@ -31,13 +31,20 @@ fn curvature_decay<'py>(py: Python<'py>, nayak_parameter: Column<'py>, a2: bool)
 }
 
 #[pyfunction]
-fn curvature_density_as_printed<'py>(py: Python<'py>, t: Column<'py>, decay: Column<'py>) -> PyResult<Values<'py>> {
+fn curvature_density_as_printed<'py>(
+    py: Python<'py>,
+    t: Column<'py>,
+    decay: Column<'py>,
+) -> PyResult<Values<'py>> {
     each(py, [t, decay], |[t, decay]| Ok(theory::curvature_density_as_printed(t, decay)))
 }
 
 /// An infinite tip radius is none: the surface is nominally flat.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "three moments, two constants of the material, a tip and two slips")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "three moments, two constants of the material, a tip and two slips"
+)]
 fn mean_loop_loss<'py>(
     py: Python<'py>,
     m0_m2: Column<'py>,
@@ -53,12 +60,20 @@ fn mean_loop_loss<'py>(
     let columns = [m0_m2, m2, m4_1_m2, contact_modulus_pa, work_of_adhesion_j_m2, tip_radius_m];
     each(py, columns, |[m0_m2, m2, m4_1_m2, modulus, adhesion, tip]| {
         let tip = (tip < f64::INFINITY).then_some(tip);
-        theory::mean_loop_loss_as_printed(&Moments { m0_m2, m2, m4_1_m2 }, &material(MEAN_LOSS, modulus, adhesion)?, tip, slips)
+        theory::mean_loop_loss_as_printed(
+            &Moments { m0_m2, m2, m4_1_m2 },
+            &material(MEAN_LOSS, modulus, adhesion)?,
+            tip,
+            slips,
+        )
     })
 }
 
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "three moments, two constants of the material, an area and two slips")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "three moments, two constants of the material, an area and two slips"
+)]
 fn deng_kesari_loss<'py>(
     py: Python<'py>,
     m0_m2: Column<'py>,
@@ -75,12 +90,19 @@ fn deng_kesari_loss<'py>(
     each(py, columns, |[m0_m2, m2, m4_1_m2, modulus, adhesion, area]| {
         let m2 = positive(MEAN_LOSS, "m2", m2)?;
         let material = material(MEAN_LOSS, modulus, adhesion)?;
-        Ok(within(area >= 0.0, theory::deng_kesari_loss_as_printed(&Moments { m0_m2, m2, m4_1_m2 }, &material, area, slips)?))
+        Ok(within(
+            area >= 0.0,
+            theory::deng_kesari_loss_as_printed(&Moments { m0_m2, m2, m4_1_m2 }, &material, area, slips)?,
+        ))
     })
 }
 
 #[pyfunction]
-fn dalvi_loss<'py>(py: Python<'py>, work_of_adhesion_j_m2: Column<'py>, area_m2: Column<'py>) -> PyResult<Values<'py>> {
+fn dalvi_loss<'py>(
+    py: Python<'py>,
+    work_of_adhesion_j_m2: Column<'py>,
+    area_m2: Column<'py>,
+) -> PyResult<Values<'py>> {
     each(py, [work_of_adhesion_j_m2, area_m2], |[adhesion, area]| {
         // The modulus does not enter.
         Ok(within(area >= 0.0, theory::dalvi_loss(&material("Dalvi's loss", 1.0, adhesion)?, area)))
@@ -97,7 +119,10 @@ fn pinning_loss<'py>(
     each(py, [work_of_adhesion_j_m2, elastic_energy_j_m2, area_m2], |[adhesion, elastic, area]| {
         // The modulus does not enter.
         let material = material("the pinning loss", 1.0, adhesion)?;
-        Ok(within(area >= 0.0 && elastic >= 0.0, theory::pinning_loss(&material, elastic, area).unwrap_or(f64::NAN)))
+        Ok(within(
+            area >= 0.0 && elastic >= 0.0,
+            theory::pinning_loss(&material, elastic, area).unwrap_or(f64::NAN),
+        ))
     })
 }
 
@@ -107,7 +132,11 @@ fn sticky_line<'py>(py: Python<'py>, persson_tosatti: Column<'py>) -> PyResult<V
 }
 
 #[pyfunction]
-fn adhesionless_area<'py>(py: Python<'py>, load: Column<'py>, rms_slope: Column<'py>) -> PyResult<Values<'py>> {
+fn adhesionless_area<'py>(
+    py: Python<'py>,
+    load: Column<'py>,
+    rms_slope: Column<'py>,
+) -> PyResult<Values<'py>> {
     each(py, [load, rms_slope], |[load, slope]| {
         let slope = positive("the area without adhesion", "the rms gradient", slope)?;
         Ok(within(load >= 0.0, theory::adhesionless_area(load, slope)))
@@ -115,7 +144,11 @@ fn adhesionless_area<'py>(py: Python<'py>, load: Column<'py>, rms_slope: Column<
 }
 
 #[pyfunction]
-fn adhesionless_area_small<'py>(py: Python<'py>, load: Column<'py>, rms_slope: Column<'py>) -> PyResult<Values<'py>> {
+fn adhesionless_area_small<'py>(
+    py: Python<'py>,
+    load: Column<'py>,
+    rms_slope: Column<'py>,
+) -> PyResult<Values<'py>> {
     each(py, [load, rms_slope], |[load, slope]| {
         let slope = positive("the area without adhesion at small loads", "the rms gradient", slope)?;
         Ok(within(load >= 0.0, theory::adhesionless_area_small(load, slope)))
@@ -131,10 +164,17 @@ fn fuller_tabor<'py>(
     mean_radius_m: Column<'py>,
 ) -> PyResult<Values<'py>> {
     const ACTION: &str = "Fuller and Tabor's parameter";
-    each(py, [contact_modulus_pa, work_of_adhesion_j_m2, height_sd_m, mean_radius_m], |[modulus, adhesion, height_sd, radius]| {
-        let radius = positive(ACTION, "the mean radius of the summits [m]", radius)?;
-        Ok(within(height_sd >= 0.0, theory::fuller_tabor(&material(ACTION, modulus, adhesion)?, height_sd, radius)))
-    })
+    each(
+        py,
+        [contact_modulus_pa, work_of_adhesion_j_m2, height_sd_m, mean_radius_m],
+        |[modulus, adhesion, height_sd, radius]| {
+            let radius = positive(ACTION, "the mean radius of the summits [m]", radius)?;
+            Ok(within(
+                height_sd >= 0.0,
+                theory::fuller_tabor(&material(ACTION, modulus, adhesion)?, height_sd, radius),
+            ))
+        },
+    )
 }
 
 /// Adds them to the module.

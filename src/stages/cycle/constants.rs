@@ -48,5 +48,11 @@ pub(in crate::stages) const ESTIMATES: &[Constant] = &[
         "With merging, at ζ/64 and `F_max/(E* A0)` = 0.0071.",
         "",
     ),
-    Constant::new("long loop", &[LONG], "s", "A longer loop by boundary elements is announced before it starts.", ""),
+    Constant::new(
+        "long loop",
+        &[LONG],
+        "s",
+        "A longer loop by boundary elements is announced before it starts.",
+        "",
+    ),
 ];

@@ -16,15 +16,27 @@ use std::iter::repeat_n;
 pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, StageError> {
     let (campaign, params) = (task.campaign, task.params());
     let surface = read_surface_estimates(&campaign.estimates_path(&campaign.surfaces[task.unit.surface]))?;
-    let all = CycleEstimates::of(&surface, target(params).as_ref(), &computed.summits, &params.material, &computed.adhesionless)?;
-    let (loads, nominal_m2, rms_height_m) = (&params.cycle.max_load, surface.nominal_area_m2(), computed.rms_height_m);
+    let all = CycleEstimates::of(
+        &surface,
+        target(params).as_ref(),
+        &computed.summits,
+        &params.material,
+        &computed.adhesionless,
+    )?;
+    let (loads, nominal_m2, rms_height_m) =
+        (&params.cycle.max_load, surface.nominal_area_m2(), computed.rms_height_m);
     let energy_scale_j = params.material.contact_modulus_pa * nominal_m2 * rms_height_m;
     let same = |value: Option<f64>| repeat_n(value.filter(finite), loads.len());
     let at_load: Vec<LoadEstimates> = loads.iter().map(|load| all.at_load(*load)).collect();
-    let each = |value: fn(&LoadEstimates) -> Option<f64>, unit: f64| at_load.iter().map(move |at| value(at).map(|value| value / unit));
-    let touched = |turning: &(usize, f64)| all.isolated_loss_j(&touched(&computed.cycle, *turning)) / energy_scale_j;
+    let each = |value: fn(&LoadEstimates) -> Option<f64>, unit: f64| {
+        at_load.iter().map(move |at| value(at).map(|value| value / unit))
+    };
+    let touched =
+        |turning: &(usize, f64)| all.isolated_loss_j(&touched(&computed.cycle, *turning)) / energy_scale_j;
     let reversals = reversals(&computed.cycle, loads);
-    let by_asperities = |turning: &Option<(usize, f64)>| turning.as_ref().filter(|_| computed.per_wavelength.is_none()).map(touched);
+    let by_asperities = |turning: &Option<(usize, f64)>| {
+        turning.as_ref().filter(|_| computed.per_wavelength.is_none()).map(touched)
+    };
     let tabor = |value: fn(&Tabor) -> f64| same(all.tabor.as_ref().map(value));
     let mut frame = Identity::of(campaign, task.unit)
         .begin(&ESTIMATES, loads.len())
@@ -32,7 +44,12 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
         .f64("energy_scale_j", same(Some(energy_scale_j)))
         .f64("loss_dalvi_nominal_j", same(Some(all.dalvi_nominal_j)))
         .f64("loss_pinning_nominal_j", same(all.pinning_nominal_j))
-        .f64("resolution_j", reversals.iter().map(|turning| turning.and_then(|turning| resolution_j(&computed.cycle, turning))))
+        .f64(
+            "resolution_j",
+            reversals
+                .iter()
+                .map(|turning| turning.and_then(|turning| resolution_j(&computed.cycle, turning))),
+        )
         .f64("conformity", same(all.ratios.conformity))
         .f64("conformity_realised", same(all.ratios.conformity_realised))
         .f64("persson_tosatti", same(all.ratios.persson_tosatti))
@@ -44,14 +61,19 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
         .f64("tabor_mean", tabor(|of| of.mean))
         .f64("low_tabor_share", tabor(|of| of.low_share))
         .f64("fuller_tabor", same(all.fuller_tabor))
-        .f64("elements_per_wavelength", same(computed.per_wavelength.map(|points| surface.per_shortest_wavelength(points))))
+        .f64(
+            "elements_per_wavelength",
+            same(computed.per_wavelength.map(|points| surface.per_shortest_wavelength(points))),
+        )
         .f64("area_adhesionless", at_load.iter().map(|at| at.area_adhesionless))
         .f64("area_adhesionless_small", at_load.iter().map(|at| at.area_adhesionless_small))
         .f64("area_jkr_curve", each(|at| at.jkr_curve.map(|found| found.area_m2), nominal_m2))
         .f64("pull_off_jkr_curve", each(|at| at.jkr_curve.map(|found| found.pull_off_m2), nominal_m2))
         .f64("loss_jkr_curve", each(|at| at.jkr_curve.map(|found| found.loss_m3), nominal_m2 * rms_height_m))
         .f64("loss_touched", reversals.iter().map(by_asperities));
-    for (columns, of) in [(&DENG_KESARI, all.deng_kesari), (&DENG_KESARI_REALISED, Some(all.deng_kesari_realised))] {
+    for (columns, of) in
+        [(&DENG_KESARI, all.deng_kesari), (&DENG_KESARI_REALISED, Some(all.deng_kesari_realised))]
+    {
         for (place, column) in columns.iter().enumerate() {
             frame = frame.f64(column.name, same(of.and_then(|of| of.nominal_j[place])));
         }
@@ -61,7 +83,11 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
 
 /// Step and load of each load reversal of the spec; nothing for a load that is not reached.
 fn reversals(cycle: &Cycle<()>, loads: &[f64]) -> Vec<Option<(usize, f64)>> {
-    loads.iter().enumerate().map(|(at, load)| cycle.turning.get(at).map(|(step, ())| (*step, *load))).collect()
+    loads
+        .iter()
+        .enumerate()
+        .map(|(at, load)| cycle.turning.get(at).map(|(step, ())| (*step, *load)))
+        .collect()
 }
 
 /// Asperities that jumped into contact in the loop of a load reversal, each once, ascending.
@@ -86,7 +112,10 @@ fn resolution_j(cycle: &Cycle<()>, (turning, max_load): (usize, f64)) -> Option<
     let works = loading().map(|step| step.work_j).chain(unloading().map(|step| at_reversal + step.work_j));
     let work_j = works.map(f64::abs).fold(0.0, f64::max);
     // Without adhesion the events of loading are undone on unloading, and nothing but rounding remains.
-    let events = || loading().map(|step| step.dissipated_j).sum::<f64>() + unloading().map(|step| step.dissipated_j).sum::<f64>();
+    let events = || {
+        loading().map(|step| step.dissipated_j).sum::<f64>()
+            + unloading().map(|step| step.dissipated_j).sum::<f64>()
+    };
     let events_j = if loss_j == 0.0 { 0.0 } else { events() };
     Some(LoopEnergy { loss_j, events_j, work_j }.resolution_j())
 }

@@ -1,4 +1,5 @@
-//! Calls of the pipeline to the method of a case. The tables, the tasks and their checkpoints are the same for all methods.
+//! Calls of the pipeline to the method of a case. The tables, the tasks and their checkpoints are the same
+//! for all methods.
 
 use super::super::StageError;
 use super::super::cost::Cost;
@@ -29,7 +30,8 @@ pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Res
     }
 }
 
-/// Grid of a case on a generated surface, or on the square of a measured one; nothing without it, and for a method without a grid.
+/// Grid of a case on a generated surface, or on the square of a measured one; nothing without it, and for a
+/// method without a grid.
 pub(in crate::stages) fn lattice(params: &CaseParams, square: Option<Square>) -> Option<Lattice> {
     match &params.method {
         MethodOptions::Asperities(_) => None,
@@ -38,15 +40,19 @@ pub(in crate::stages) fn lattice(params: &CaseParams, square: Option<Square>) ->
 }
 
 /// Grid, memory and time of a cycle at a ratio `U_el/Δγ`; nothing for a measured surface that is not known.
-pub(in crate::stages) fn cost(params: &CaseParams, known: Option<&Known>, ratio: Option<f64>) -> Option<Cost> {
+pub(in crate::stages) fn cost(
+    params: &CaseParams,
+    known: Option<&Known>,
+    ratio: Option<f64>,
+) -> Option<Cost> {
     match &params.method {
         MethodOptions::Asperities(options) => asperities::cost(params, options, known),
         MethodOptions::Elements(options) => Of { params, options }.cost(known, ratio),
     }
 }
 
-/// The error by which the cycles of a case fail on a generated surface, or on a measured one that is known, as far as it is
-/// known before them.
+/// The error by which the cycles of a case fail on a generated surface, or on a measured one that is known,
+/// as far as it is known before them.
 pub(in crate::stages) fn refusal(params: &CaseParams, known: Option<&Known>) -> Option<StageError> {
     match &params.method {
         MethodOptions::Asperities(options) => asperities::refusal(params, options, known?),

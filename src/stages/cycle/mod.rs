@@ -78,17 +78,23 @@ impl Tasks for Cycles<'_> {
     /// A failed cycle would fail again; it is tried if that is requested.
     fn is_given_up(&self, of: &CycleUnit, standing: &Standing) -> bool {
         let Context { campaign, task, .. } = self.context;
-        let is_retried = || task.retried.contains(&of.id) && campaign.failed_at(of).is_none_or(|stage| stage == Stage::Cycle);
+        let is_retried = || {
+            task.retried.contains(&of.id) && campaign.failed_at(of).is_none_or(|stage| stage == Stage::Cycle)
+        };
         matches!(standing, Standing::Failed(_)) && !is_retried()
     }
 
     fn input(&self, of: &CycleUnit) -> Option<(String, Standing)> {
         let surface = self.surface(of);
-        Some((surface.id.clone(), self.context.campaign.standing(&surface.asperities(), self.context.task.check)))
+        Some((
+            surface.id.clone(),
+            self.context.campaign.standing(&surface.asperities(), self.context.task.check),
+        ))
     }
 
     fn duration_rank(&self, of: &CycleUnit) -> (bool, u32) {
-        let (method, surface) = (&self.context.campaign.cases[of.case].case.params.method, &self.surface(of).params);
+        let (method, surface) =
+            (&self.context.campaign.cases[of.case].case.params.method, &self.surface(of).params);
         (method.kind() > Kind::Asperities, surface.generated().map_or(0, |surface| surface.magnification))
     }
 
@@ -118,7 +124,8 @@ struct CycleTask<'a> {
     watch: &'a dyn Watch,
 }
 
-/// Result of a method: a cycle, further files of this method, the units of the dimensionless columns, and the input of the estimates.
+/// Result of a method: a cycle, further files of this method, the units of the dimensionless columns, and the
+/// input of the estimates.
 struct Computed {
     method: &'static str,
     /// Name and number of the unknowns.
@@ -160,12 +167,18 @@ fn compute(task: CycleTask<'_>) -> Result<Outcome, StageError> {
     let mut computed = method::run(&task)?;
     let max_loads = &task.params().cycle.max_load;
     let of_all = tables::Tables { of: Identity::of(campaign, unit), computed: &computed, max_loads };
-    let mut files =
-        write_tables(campaign, unit, &[of_all.contacts()?, of_all.events()?, of_all.steps()?, estimates::table(task, &computed)?])?;
+    let mut files = write_tables(
+        campaign,
+        unit,
+        &[of_all.contacts()?, of_all.events()?, of_all.steps()?, estimates::table(task, &computed)?],
+    )?;
     files.extend(write_tables(campaign, unit, &computed.tables)?);
     files.append(&mut computed.files);
     let unreached = std::mem::take(&mut computed.cycle.unreached);
-    let unreached: Vec<_> = unreached.into_iter().map(|(at, error)| (max_loads[at], StageError::from(error).to_string())).collect();
+    let unreached: Vec<_> = unreached
+        .into_iter()
+        .map(|(at, error)| (max_loads[at], StageError::from(error).to_string()))
+        .collect();
     files.extend(not_reached::record(campaign, unit, &unreached, watch)?);
     Ok(Outcome { files, effort: effort(&computed) })
 }
@@ -173,7 +186,9 @@ fn compute(task: CycleTask<'_>) -> Result<Outcome, StageError> {
 /// Writes the tables of a cycle.
 fn write_tables(campaign: &Campaign, unit: &CycleUnit, tables: &[Frame]) -> Result<Vec<Written>, StageError> {
     let (dir, keys) = (campaign.cycle_dir(unit), [("key", unit.key.clone())]);
-    let write = |frame: &Frame| Ok(parquet::write_table(&dir.join(format!("{}.parquet", frame.table().name)), frame, &keys)?);
+    let write = |frame: &Frame| {
+        Ok(parquet::write_table(&dir.join(format!("{}.parquet", frame.table().name)), frame, &keys)?)
+    };
     tables.iter().map(write).collect()
 }
 
@@ -239,7 +254,13 @@ struct Checkpoints<'a> {
 
 impl<'a> Checkpoints<'a> {
     fn of(campaign: &Campaign, unit: &'a CycleUnit, watch: &'a dyn Watch) -> Self {
-        Self { path: campaign.halfway_path(unit), key: &unit.key, id: &unit.id, watch, kept_at: Instant::now() }
+        Self {
+            path: campaign.halfway_path(unit),
+            key: &unit.key,
+            id: &unit.id,
+            watch,
+            kept_at: Instant::now(),
+        }
     }
 
     /// The last checkpoint; nothing if there is none of this cycle.
@@ -254,8 +275,13 @@ impl<'a> Checkpoints<'a> {
         }
         self.kept_at = Instant::now();
         let kept = serialized(state).map_err(|error| error.to_string());
-        if let Err(why) = kept.and_then(|bytes| write_halfway(&self.path, self.key, &bytes).map_err(|error| error.to_string())) {
-            self.watch.notice(&format!("{}: {why}; continuing without checkpoint, an interrupted cycle restarts", self.id));
+        if let Err(why) = kept
+            .and_then(|bytes| write_halfway(&self.path, self.key, &bytes).map_err(|error| error.to_string()))
+        {
+            self.watch.notice(&format!(
+                "{}: {why}; continuing without checkpoint, an interrupted cycle restarts",
+                self.id
+            ));
         }
     }
 }

@@ -18,8 +18,13 @@ pub(super) fn record(
     for (max_load, error) in unreached {
         watch.notice(&format!("{}: no result at F_max/(E* A0) = {max_load}: {error}", unit.id));
     }
-    let loads: Vec<_> = unreached.iter().map(|(max_load, error)| json!({ "max_load": max_load, "error": error })).collect();
+    let loads: Vec<_> =
+        unreached.iter().map(|(max_load, error)| json!({ "max_load": max_load, "error": error })).collect();
     let record = json!({ "key": unit.key, "status": "not reached", "loads": loads });
     let path = campaign.not_reached_path(unit);
-    Ok(Some(commit_bytes("record the loads that are not reached", &path, format!("{record:#}\n").as_bytes())?))
+    Ok(Some(commit_bytes(
+        "record the loads that are not reached",
+        &path,
+        format!("{record:#}\n").as_bytes(),
+    )?))
 }

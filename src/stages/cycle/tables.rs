@@ -30,7 +30,8 @@ impl<'a> Tables<'a> {
     pub(super) fn steps(self) -> Result<Frame, StageError> {
         let cycle = &self.computed.cycle;
         let steps = &cycle.steps;
-        let (load_unit_n, area_unit_m2, rms_height_m) = (self.computed.load_unit_n, self.computed.area_m2, self.computed.rms_height_m);
+        let (load_unit_n, area_unit_m2, rms_height_m) =
+            (self.computed.load_unit_n, self.computed.area_m2, self.computed.rms_height_m);
         let each = |value: fn(&Step) -> f64| steps.iter().map(value);
         let some = |value: fn(&Step) -> Option<f64>| steps.iter().map(value);
         let count = |value: fn(&Step) -> usize| steps.iter().map(value);
@@ -72,7 +73,12 @@ impl<'a> Tables<'a> {
             .text("method", self.method(steps.len()))
             .f64("residual", some(|s| s.numerics.relative_residual))
             .f64("stiffness_n_m", some(|s| s.numerics.stiffness_n_m))
-            .f64("stiffness", steps.iter().map(|s| s.numerics.stiffness_n_m.map(|stiffness| stiffness / stiffness_unit_n_m)))
+            .f64(
+                "stiffness",
+                steps
+                    .iter()
+                    .map(|s| s.numerics.stiffness_n_m.map(|stiffness| stiffness / stiffness_unit_n_m)),
+            )
             .f64("reversal_load", reversals)
             .build()?)
     }
@@ -88,7 +94,12 @@ impl<'a> Tables<'a> {
             .text("branch", spots.iter().map(|s| self.step(s.step).branch.word()))
             .f64("max_load", spots.iter().map(|s| self.step(s.step).max_load))
             .i64("asperity_id", spots.iter().map(|s| s.asperity.map(|asperity| asperity as i64)))
-            .text("state", spots.iter().map(|s| if s.covered { SpotStatus::Covered } else { SpotStatus::Contact }.word()))
+            .text(
+                "state",
+                spots
+                    .iter()
+                    .map(|s| if s.covered { SpotStatus::Covered } else { SpotStatus::Contact }.word()),
+            )
             .f64("contact_radius_m", spots.iter().map(|s| s.contact_radius_m))
             .f64("load_n", spots.iter().map(|s| s.load_n))
             .f64("penetration_m", each(|s| s.penetration_m))

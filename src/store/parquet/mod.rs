@@ -13,7 +13,8 @@ use super::commit::{Written, commit};
 use super::error::StoreError;
 use super::frame::Frame;
 
-/// The file-level key under which a table carries its own schema, since Polars, pandas and DuckDB drop that of columns.
+/// The file-level key under which a table carries its own schema, since Polars, pandas and DuckDB drop that
+/// of columns.
 pub const METADATA_KEY: &str = "hysteron";
 /// Writes a table in place of `path`. `keys` are added to its file-level metadata in addition to the schema,
 /// for example `key`.
@@ -41,7 +42,8 @@ pub fn write_table(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Resul
 /// # Errors
 /// If the file cannot be read, is damaged, or is another table.
 pub fn read_table(path: &Path, table: &'static Table) -> Result<Frame, StoreError> {
-    read::rows(path, table).map_err(|cause| StoreError::new(&format!("read the table {} from", table.name), path, cause))
+    read::rows(path, table)
+        .map_err(|cause| StoreError::new(&format!("read the table {} from", table.name), path, cause))
 }
 
 /// Reads one of the keys that were given to [`write_table`], if the file has it.

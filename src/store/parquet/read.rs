@@ -46,17 +46,23 @@ pub(super) fn rows(path: &Path, table: &'static Table) -> Result<Frame, Cause> {
         check_identity(table, &own_metadata(reader.metadata())?)?;
         check_columns(table, reader.schema())?;
         let claimed = check_size(reader.metadata())?;
-        let present: Vec<bool> = table.columns.iter().map(|column| reader.schema().field_with_name(column.name).is_ok()).collect();
+        let present: Vec<bool> =
+            table.columns.iter().map(|column| reader.schema().field_with_name(column.name).is_ok()).collect();
         let mut columns: Vec<ColumnData> = table.columns.iter().map(|column| empty(column.kind)).collect();
         for batch in reader.build()? {
             let batch = batch?;
-            let written = columns.iter_mut().zip(&present).filter(|(_, present)| **present).map(|(data, _)| data);
+            let written =
+                columns.iter_mut().zip(&present).filter(|(_, present)| **present).map(|(data, _)| data);
             for (data, array) in written.zip(batch.columns()) {
                 append(data, array)?;
             }
         }
         let rows = usize::try_from(claimed)?;
-        columns.iter_mut().zip(&present).filter(|(_, present)| !**present).for_each(|(data, _)| fill(data, rows));
+        columns
+            .iter_mut()
+            .zip(&present)
+            .filter(|(_, present)| !**present)
+            .for_each(|(data, _)| fill(data, rows));
         let mut builder = Frame::of(table);
         for (column, data) in table.columns.iter().zip(columns) {
             builder = builder.with(column.name, data);

@@ -23,15 +23,19 @@ use super::{METADATA_KEY, data_type};
 /// Rows of a row group: some megabytes, so that a reader can skip and a writer stays small.
 const ROW_GROUP: usize = 1 << 17;
 
-/// The Arrow schema of a table: unit, description and source at every field, and the file-level metadata once more for readers of the Arrow schema.
+/// The Arrow schema of a table: unit, description and source at every field, and the file-level metadata once
+/// more for readers of the Arrow schema.
 fn arrow_schema(table: &Table, own: &str) -> Arc<Schema> {
     let fields: Vec<Field> = table
         .columns
         .iter()
         .map(|column| {
             let known = [("unit", column.unit), ("description", column.doc), ("source", column.source)];
-            let known: BTreeMap<String, String> =
-                known.into_iter().filter(|(_, value)| !value.is_empty()).map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+            let known: BTreeMap<String, String> = known
+                .into_iter()
+                .filter(|(_, value)| !value.is_empty())
+                .map(|(key, value)| (key.to_owned(), value.to_owned()))
+                .collect();
             Field::new(column.name, data_type(column.kind), column.nullable).with_metadata(known)
         })
         .collect();
@@ -86,6 +90,8 @@ fn array(data: &ColumnData, rows: Range<usize>) -> ArrayRef {
         ColumnData::F64(values) => Arc::new(Float64Array::from(values[rows].to_vec())),
         ColumnData::I64(values) => Arc::new(Int64Array::from(values[rows].to_vec())),
         ColumnData::Bool(values) => Arc::new(BooleanArray::from(values[rows].to_vec())),
-        ColumnData::Text(values) => Arc::new(values[rows].iter().map(Option::as_deref).collect::<StringArray>()),
+        ColumnData::Text(values) => {
+            Arc::new(values[rows].iter().map(Option::as_deref).collect::<StringArray>())
+        }
     }
 }

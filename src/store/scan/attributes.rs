@@ -60,7 +60,8 @@ impl Attributes {
     }
 }
 
-/// Bytes as text: UTF-8, or else Latin-1, in which instruments write their µ. A µ in UTF-8 that was read as Latin-1 before is one again.
+/// Bytes as text: UTF-8, or else Latin-1, in which instruments write their µ. A µ in UTF-8 that was read as
+/// Latin-1 before is one again.
 pub(crate) fn decoded(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.replace("\u{c2}\u{b5}", "\u{b5}"),

@@ -22,31 +22,45 @@ const CHAR: u32 = 2;
 const INT: u32 = 4;
 const DOUBLE: u32 = 6;
 
-/// Writes heights \[m\] in place of `path` as NetCDF (CDF-2), in the layout that SurfaceTopography reads: variables
-/// `x(x)`, `y(y)` and `heights(x, y)` of doubles, with the attributes `length`, `periodic` and `unit`. `size_m` is the
-/// size along the row index and along the column index \[m\].
+/// Writes heights \[m\] in place of
+/// `path` as NetCDF (CDF-2), in the layout that SurfaceTopography reads: variables `x(x)`,
+/// `y(y)` and `heights(x, y)` of doubles, with the attributes `length`, `periodic` and `unit`. `size_m` is
+/// the size along the row index and along the column index \[m\].
 ///
 /// # Errors
-/// If a height is not finite, a size not positive, there are no points or too many of them, or the file cannot be
-/// written whole; what was at `path` is then still there.
-pub fn write_netcdf3(path: &Path, heights: ArrayView2<'_, f64>, size_m: [f64; 2], periodic: bool) -> Result<Written, StoreError> {
+/// If a height is not finite, a size not positive, there are no points or too many of them, or the file
+/// cannot be written whole; what was at `path` is then still there.
+pub fn write_netcdf3(
+    path: &Path,
+    heights: ArrayView2<'_, f64>,
+    size_m: [f64; 2],
+    periodic: bool,
+) -> Result<Written, StoreError> {
     commit(
         "write the surface to",
         path,
         |temporary| write_all(temporary, heights, size_m, periodic),
         |temporary| {
             let back = netcdf::read(Source::open(temporary)?, None)?;
-            let same = back.heights == heights && back.size_m == Some(size_m) && back.periodic == Some(periodic);
+            let same =
+                back.heights == heights && back.size_m == Some(size_m) && back.periodic == Some(periodic);
             if same { Ok(()) } else { Err("the content read back differs from the content written".into()) }
         },
     )
 }
 
-fn write_all(path: &Path, heights: ArrayView2<'_, f64>, size_m: [f64; 2], periodic: bool) -> Result<(), Cause> {
+fn write_all(
+    path: &Path,
+    heights: ArrayView2<'_, f64>,
+    size_m: [f64; 2],
+    periodic: bool,
+) -> Result<(), Cause> {
     let (rows, columns) = heights.dim();
     points(rows as u64, columns as u64)?;
     if let Some(((row, column), height)) = heights.indexed_iter().find(|(_, height)| !height.is_finite()) {
-        return Err(format!("its height in row {row}, column {column} is {height}, and must be finite").into());
+        return Err(
+            format!("its height in row {row}, column {column} is {height}, and must be finite").into()
+        );
     }
     if let Some(size) = size_m.iter().find(|size| !size.is_finite() || **size <= 0.0) {
         return Err(format!("its size is {size} m, and must be positive").into());

@@ -1,8 +1,10 @@
-//! A height field as a self-describing format stores it, and its meaning by the attributes of the field and its axes.
+//! A height field as a self-describing format stores it, and its meaning by the attributes of the field and
+//! its axes.
 //!
-//! The rules are the same for NetCDF-3, NetCDF-4 and HDF5: packed and missing values by the CF conventions, units as
-//! `unit` or `units`, sizes from the coordinates along the axes, from the attribute `length` of SurfaceTopography, or from
-//! attributes such as `pixel_size_m` of the field, its groups or the root of the file.
+//! The rules are the same for NetCDF-3, NetCDF-4 and HDF5: packed and missing values by the CF conventions,
+//! units as `unit` or `units`, sizes from the coordinates along the axes, from the attribute
+//! `length` of SurfaceTopography, or from attributes such as `pixel_size_m` of the field, its groups or the
+//! root of the file.
 
 use ndarray::Array2;
 
@@ -15,7 +17,8 @@ use crate::lengths::metres;
 
 /// Relative difference of two statements of one size.
 const SAME: f64 = 1e-3;
-/// Deviation of a coordinate from even spacing, as a fraction of the spacing; single precision over 4096 points gives 2e-4.
+/// Deviation of a coordinate from even spacing, as a fraction of the spacing; single precision over 4096
+/// points gives 2e-4.
 const UNEVEN: f64 = 1e-2;
 
 /// A two-dimensional variable or dataset.
@@ -60,17 +63,24 @@ impl Axis {
         let standard = self.attributes.text("standard_name").unwrap_or_default();
         let name = self.name.to_ascii_lowercase();
         for text in [standard, &name] {
-            if text.contains("x_coordinate") || ["longitude", "lon", "easting", "column", "columns", "cols"].contains(&text) {
+            if text.contains("x_coordinate")
+                || ["longitude", "lon", "easting", "column", "columns", "cols"].contains(&text)
+            {
                 return Some(true);
             }
-            if text.contains("y_coordinate") || ["latitude", "lat", "northing", "row", "rows", "line", "lines"].contains(&text) {
+            if text.contains("y_coordinate")
+                || ["latitude", "lat", "northing", "row", "rows", "line", "lines"].contains(&text)
+            {
                 return Some(false);
             }
         }
         let mut signs = name.chars();
         let first = signs.next();
         if signs.next().is_some_and(char::is_alphabetic) {
-            return ["xpos", "xaxis", "ypos", "yaxis"].iter().find(|known| name.starts_with(*known)).map(|known| known.starts_with('x'));
+            return ["xpos", "xaxis", "ypos", "yaxis"]
+                .iter()
+                .find(|known| name.starts_with(*known))
+                .map(|known| known.starts_with('x'));
         }
         first.filter(|sign| matches!(sign, 'x' | 'y')).map(|sign| sign == 'x')
     }
@@ -80,15 +90,20 @@ impl Axis {
         let at = self.coordinates.as_ref().filter(|at| at.len() == points && points > 1)?;
         let (first, last) = (*at.first()?, *at.last()?);
         let spacing = (last - first) / (points - 1) as f64;
-        let even = |(place, value): (usize, &f64)| (value - first - spacing * place as f64).abs() <= UNEVEN * spacing.abs();
-        (spacing.is_finite() && spacing.abs() > 0.0 && at.iter().enumerate().all(even)).then_some(spacing.abs())
+        let even = |(place, value): (usize, &f64)| {
+            (value - first - spacing * place as f64).abs() <= UNEVEN * spacing.abs()
+        };
+        (spacing.is_finite() && spacing.abs() > 0.0 && at.iter().enumerate().all(even))
+            .then_some(spacing.abs())
     }
 
-    /// Pixel size along this axis by its coordinates or by its attribute `length`; an error if that is no length.
+    /// Pixel size along this axis by its coordinates or by its attribute `length`; an error if that is no
+    /// length.
     fn pixel(&self, points: usize, otherwise: Option<&str>) -> Result<Option<Pixel>, Cause> {
         let unit = self.attributes.unit().or(otherwise);
         let spacing = self.spacing(points);
-        let length = self.attributes.numbers("length").and_then(|(values, kind)| Some((*values.first()?, kind)));
+        let length =
+            self.attributes.numbers("length").and_then(|(values, kind)| Some((*values.first()?, kind)));
         let Some((length, kind)) = length else {
             let known = unit.map(metres);
             // Degrees, for example, are no lengths.
@@ -140,14 +155,18 @@ impl Field {
         Ok(Scan { heights, size_m, unit, factor: packing.scale * factor, periodic, spacing, first, notes })
     }
 
-    /// Unit of the heights: stated by the field, by an axis in the layout of SurfaceTopography, by a group, or by the format.
+    /// Unit of the heights: stated by the field, by an axis in the layout of SurfaceTopography, by a group,
+    /// or by the format.
     fn unit_of_heights(&self, own: &Attributes) -> Option<String> {
         if let Some(unit) = stated::unit_of_heights(own) {
             return Some(unit.to_owned());
         }
-        // SurfaceTopography has one unit for sizes and heights, as the attribute `unit` of x; `units` holds for the coordinates alone.
+        // SurfaceTopography has one unit for sizes and heights, as the attribute `unit` of x; `units` holds
+        // for the coordinates alone.
         let lateral = || self.axes.iter().find_map(|axis| axis.attributes.text("unit"));
-        let outer = || self.levels.iter().skip(1).filter_map(stated::unit_of_heights).find(|unit| metres(unit).is_some());
+        let outer = || {
+            self.levels.iter().skip(1).filter_map(stated::unit_of_heights).find(|unit| metres(unit).is_some())
+        };
         lateral().or_else(outer).or(self.unit).map(ToOwned::to_owned)
     }
 
@@ -163,7 +182,9 @@ impl Field {
     /// Pixel sizes along the first and the second index, and notes on statements that are not used.
     fn pixels(&self, unit: Option<&str>, x_first: bool) -> Result<(Option<[Pixel; 2]>, Vec<String>), Cause> {
         let counts = [self.values.nrows(), self.values.ncols()];
-        let [first, second] = [0, 1].map(|at| self.axes.get(at).map_or(Ok(None), |axis| axis.pixel(*counts.get(at).unwrap_or(&0), unit)));
+        let [first, second] = [0, 1].map(|at| {
+            self.axes.get(at).map_or(Ok(None), |axis| axis.pixel(*counts.get(at).unwrap_or(&0), unit))
+        });
         let mut all = Vec::new();
         if let (Some(first), Some(second)) = (first?, second?) {
             all.push(("the coordinates".to_owned(), [first, second]));
@@ -180,13 +201,16 @@ impl Field {
             }
         }
         let Some((name, chosen)) = all.first().cloned() else { return Ok((None, Vec::new())) };
-        let differs = |other: &[Pixel; 2]| chosen.iter().zip(other).any(|(a, b)| (a.size() / b.size() - 1.0).abs() > SAME);
+        let differs = |other: &[Pixel; 2]| {
+            chosen.iter().zip(other).any(|(a, b)| (a.size() / b.size() - 1.0).abs() > SAME)
+        };
         match all.iter().find(|(_, other)| differs(other)) {
             None => Ok((Some(chosen), Vec::new())),
             Some((other, pixels)) => Ok((
                 None,
                 vec![format!(
-                    "sizes: {name} and {other} of the file contradict each other (pixels of {:e} and {:e}), so that neither is used",
+                    "sizes: {name} and {other} of the file contradict each other (pixels of {:e} and {:e}), \
+                     so that neither is used",
                     chosen.first().map_or(0.0, Pixel::size),
                     pixels.first().map_or(0.0, Pixel::size)
                 )],

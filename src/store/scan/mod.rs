@@ -37,8 +37,9 @@ pub const MOST_POINTS: u64 = 1 << 28;
 /// A height field as a file has it.
 #[derive(Debug, Clone)]
 pub struct Scan {
-    /// Heights \[m\] where [`unit`](Self::unit) is there, in the file's own numbers where it is not; NaN where a point
-    /// is missing. The row index runs along x, the column index along y, whichever order the file has.
+    /// Heights \[m\] where [`unit`](Self::unit) is there, in the file's own numbers where it is not; NaN
+    /// where a point is missing. The row index runs along x, the column index along y, whichever order the
+    /// file has.
     pub heights: Array2<f64>,
     /// Size along x and y \[m\], points times distance of points, if the file says.
     pub size_m: Option<[f64; 2]>,
@@ -48,8 +49,8 @@ pub struct Scan {
     pub factor: f64,
     /// True if the surface continues periodically, if the file says.
     pub periodic: Option<bool>,
-    /// Distance of points along x and y in the file's own numbers, if it has positions; their unit is that of the heights where
-    /// [`size_m`](Self::size_m) is unknown.
+    /// Distance of points along x and y in the file's own numbers, if it has positions; their unit is that of
+    /// the heights where [`size_m`](Self::size_m) is unknown.
     pub spacing: Option<[f64; 2]>,
     /// Axis of the first index of the file: of the lines of a text, of the rows of an array.
     pub first: FirstIndex,
@@ -60,7 +61,16 @@ pub struct Scan {
 impl Scan {
     /// A scan whose file states nothing but heights.
     fn bare(heights: Array2<f64>, first: FirstIndex) -> Self {
-        Self { heights, size_m: None, unit: None, factor: 1.0, periodic: None, spacing: None, first, notes: Vec::new() }
+        Self {
+            heights,
+            size_m: None,
+            unit: None,
+            factor: 1.0,
+            periodic: None,
+            spacing: None,
+            first,
+            notes: Vec::new(),
+        }
     }
 
     /// Scan with x and y exchanged.
@@ -68,7 +78,8 @@ impl Scan {
     /// # Errors
     /// If the memory of this machine does not suffice.
     pub fn transposed(mut self, path: &Path) -> Result<Self, StoreError> {
-        self.heights = numbers::turned(self.heights).map_err(|cause| StoreError::new("read the surface from", path, cause))?;
+        self.heights = numbers::turned(self.heights)
+            .map_err(|cause| StoreError::new("read the surface from", path, cause))?;
         self.size_m = self.size_m.map(|[x, y]| [y, x]);
         self.spacing = self.spacing.map(|[x, y]| [y, x]);
         self.first = if self.first == FirstIndex::X { FirstIndex::Y } else { FirstIndex::X };
@@ -88,7 +99,8 @@ pub enum FirstIndex {
 /// Properties of a file that its user states.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Asked<'a> {
-    /// Name of the height field where a format has names; without it, the only one or the one called `heights`.
+    /// Name of the height field where a format has names; without it, the only one or the one called
+    /// `heights`.
     pub field: Option<&'a str>,
     /// Lines of a text before its numbers that are not read.
     pub skip_lines: u64,
@@ -104,7 +116,8 @@ pub fn read(path: &Path, format: Format, asked: &Asked<'_>) -> Result<Scan, Stor
     fenced(|| {
         if let Some(name) = asked.field.filter(|_| format != Format::NetCdf3) {
             return Err(format!(
-                "no dataset {name:?}: the format {} has one unnamed field\nhelp: remove surface.dataset (--dataset)",
+                "no dataset {name:?}: the format {} has one unnamed field\nhelp: remove surface.dataset \
+                 (--dataset)",
                 format.name()
             )
             .into());
@@ -127,13 +140,17 @@ impl Asked<'_> {
     /// Refuses properties of a text for another format.
     pub(super) fn of_text(&self, format: &str) -> Result<(), Cause> {
         if self.skip_lines > 0 {
-            return Err(format!("the format {format} has no lines to skip\nhelp: remove surface.skip_lines (--skip-lines)").into());
+            return Err(format!(
+                "the format {format} has no lines to skip\nhelp: remove surface.skip_lines (--skip-lines)"
+            )
+            .into());
         }
         match self.width {
-            Some(width) => {
-                Err(format!("the format {format} states its points per line; {width} was given\nhelp: remove surface.width (--width)")
-                    .into())
-            }
+            Some(width) => Err(format!(
+                "the format {format} states its points per line; {width} was given\nhelp: remove \
+                     surface.width (--width)"
+            )
+            .into()),
             None => Ok(()),
         }
     }

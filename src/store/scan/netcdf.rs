@@ -41,13 +41,24 @@ pub(super) fn read(mut source: Source, variable: Option<&str>) -> Result<Scan, C
     }
     let [first, second] = along.try_into().map_err(|_| "not two axes")?;
     let levels = vec![variable.attributes.clone(), header.attributes];
-    Field { values, kind, levels, axes: [first, second], mask, first: FirstIndex::X, netcdf: true, unit: None }.scan()
+    Field {
+        values,
+        kind,
+        levels,
+        axes: [first, second],
+        mask,
+        first: FirstIndex::X,
+        netcdf: true,
+        unit: None,
+    }
+    .scan()
 }
 
 impl Header {
     fn variable(&self, name: &str) -> Result<&Variable, Cause> {
         self.variables.iter().find(|variable| variable.name == name).ok_or_else(|| {
-            let fields: Vec<_> = self.variables.iter().filter(|other| other.dimensions.len() == 2).take(9).collect();
+            let fields: Vec<_> =
+                self.variables.iter().filter(|other| other.dimensions.len() == 2).take(9).collect();
             let names: Vec<_> = fields.iter().map(|field| format!("{:?}", field.name)).collect();
             let there = if names.is_empty() { "no two-dimensional one".to_owned() } else { names.join(", ") };
             format!("no variable {name:?}\nhelp: use one of {there}").into()
@@ -56,7 +67,8 @@ impl Header {
 
     /// Name of the height field: `heights`, or the only field of numbers.
     fn heights(&self) -> Result<&str, Cause> {
-        let fields: Vec<_> = self.variables.iter().filter(|other| other.kind.is_some() && self.axes(other).is_ok()).collect();
+        let fields: Vec<_> =
+            self.variables.iter().filter(|other| other.kind.is_some() && self.axes(other).is_ok()).collect();
         match fields[..] {
             [only] => Ok(&only.name),
             _ => Ok(HEIGHTS),
@@ -65,23 +77,31 @@ impl Header {
 
     /// Points along a dimension.
     fn points(&self, place: usize) -> u64 {
-        self.dimensions.get(place).map_or(0, |dimension| if dimension.length == 0 { self.records } else { dimension.length })
+        self.dimensions
+            .get(place)
+            .map_or(0, |dimension| if dimension.length == 0 { self.records } else { dimension.length })
     }
 
-    /// Places of the two dimensions of a field; those with a single point, such as a time, do not count beyond two.
+    /// Places of the two dimensions of a field; those with a single point, such as a time, do not count
+    /// beyond two.
     fn axes(&self, variable: &Variable) -> Result<[usize; 2], Cause> {
         let count = variable.dimensions.len();
         let mut places = variable.dimensions.clone();
-        while let Some(single) = places.iter().position(|place| self.points(*place) == 1).filter(|_| places.len() > 2) {
+        while let Some(single) =
+            places.iter().position(|place| self.points(*place) == 1).filter(|_| places.len() > 2)
+        {
             places.remove(single);
         }
-        places.try_into().map_err(|_| format!("variable {:?} has {count} dimensions instead of 2", variable.name).into())
+        places
+            .try_into()
+            .map_err(|_| format!("variable {:?} has {count} dimensions instead of 2", variable.name).into())
     }
 
     /// The axis of a dimension, which the variable of its name describes.
     fn axis(&self, source: &mut Source, place: usize) -> Result<Axis, Cause> {
         let Some(dimension) = self.dimensions.get(place) else { return Ok(Axis::default()) };
-        let of = self.variables.iter().find(|other| other.name == dimension.name && other.dimensions == [place]);
+        let of =
+            self.variables.iter().find(|other| other.name == dimension.name && other.dimensions == [place]);
         let coordinates = match of {
             Some(of) if of.kind.is_some() && self.points(place) <= MOST_COORDINATES => {
                 Some(self.numbers(source, of, [self.points(place), 1])?)
@@ -94,14 +114,19 @@ impl Header {
 
     /// True if a variable has a part of itself in every record.
     fn grows(&self, variable: &Variable) -> bool {
-        variable.dimensions.first().and_then(|place| self.dimensions.get(*place)).is_some_and(|dimension| dimension.length == 0)
+        variable
+            .dimensions
+            .first()
+            .and_then(|place| self.dimensions.get(*place))
+            .is_some_and(|dimension| dimension.length == 0)
     }
 
     /// Bytes of a variable, or of its part in one record.
     fn bytes(&self, variable: &Variable) -> Option<u64> {
         let width = variable.kind.map_or(1, |kind| kind.width() as u64);
         let own = variable.dimensions.iter().skip(usize::from(self.grows(variable)));
-        own.filter_map(|place| self.dimensions.get(*place)).try_fold(width, |bytes, dimension| bytes.checked_mul(dimension.length))
+        own.filter_map(|place| self.dimensions.get(*place))
+            .try_fold(width, |bytes, dimension| bytes.checked_mul(dimension.length))
     }
 
     /// Bytes from one record to the next.
@@ -122,11 +147,17 @@ impl Header {
         let end = |variable: &Variable| {
             let parts = if self.grows(variable) { self.records } else { 1 };
             let last = if parts > 1 { self.record()?.checked_mul(parts - 1)? } else { 0 };
-            if parts == 0 { Some(0) } else { last.checked_add(self.bytes(variable)?)?.checked_add(variable.begin) }
+            if parts == 0 {
+                Some(0)
+            } else {
+                last.checked_add(self.bytes(variable)?)?.checked_add(variable.begin)
+            }
         };
         match self.variables.iter().find(|variable| end(variable).is_none_or(|end| end > length)) {
             None => Ok(()),
-            Some(cut) => Err(format!("the file ends within variable {:?}; it was probably truncated", cut.name).into()),
+            Some(cut) => {
+                Err(format!("the file ends within variable {:?}; it was probably truncated", cut.name).into())
+            }
         }
     }
 
@@ -139,7 +170,12 @@ impl Header {
     }
 
     /// The numbers of a variable of this extent.
-    fn numbers(&self, source: &mut Source, variable: &Variable, [rows, columns]: [u64; 2]) -> Result<Vec<f64>, Cause> {
+    fn numbers(
+        &self,
+        source: &mut Source,
+        variable: &Variable,
+        [rows, columns]: [u64; 2],
+    ) -> Result<Vec<f64>, Cause> {
         let name = &variable.name;
         let kind = variable.kind.ok_or_else(|| format!("variable {name:?} is text"))?;
         let count = rows.checked_mul(columns).ok_or("its extent is too large")?;
@@ -148,11 +184,15 @@ impl Header {
         let each = count.checked_div(parts).unwrap_or(0);
         let part = each.checked_mul(kind.width() as u64);
         let step = if parts > 1 { self.record() } else { part };
-        let end = step
-            .zip(part)
-            .and_then(|(step, part)| step.checked_mul(parts.saturating_sub(1))?.checked_add(part)?.checked_add(variable.begin));
+        let end = step.zip(part).and_then(|(step, part)| {
+            step.checked_mul(parts.saturating_sub(1))?.checked_add(part)?.checked_add(variable.begin)
+        });
         let (Some(step), Some(part), Some(_)) = (step, part, end.filter(|end| *end <= source.length)) else {
-            return Err(format!("variable {name:?} claims {rows} by {columns} values, more than {} bytes can hold", source.length).into());
+            return Err(format!(
+                "variable {name:?} claims {rows} by {columns} values, more than {} bytes can hold",
+                source.length
+            )
+            .into());
         };
         let mut values = room(count)?;
         source.file.seek(SeekFrom::Start(variable.begin))?;

@@ -62,7 +62,10 @@ impl Header {
         }
         let mut header = Self { records: bytes.count()?, ..Self::default() };
         if header.records == if bytes.counts == 8 { u64::MAX } else { STREAMING } {
-            return Err("the file was not closed by the program that wrote it: the number of records is missing".into());
+            return Err(
+                "the file was not closed by the program that wrote it: the number of records is missing"
+                    .into(),
+            );
         }
         for _ in 0..bytes.list(10, "dimensions")? {
             header.dimensions.push(Dimension { name: bytes.name()?, length: bytes.count()? });
@@ -152,7 +155,9 @@ impl Bytes<'_> {
         for _ in 0..self.list(12, "attributes")? {
             let name = self.name()?;
             let (kind, count) = (self.kind()?, self.count()?);
-            let length = count.checked_mul(kind.map_or(1, |kind| kind.width() as u64)).ok_or("the file ends within the header")?;
+            let length = count
+                .checked_mul(kind.map_or(1, |kind| kind.width() as u64))
+                .ok_or("the file ends within the header")?;
             if length > LONGEST_ATTRIBUTE {
                 self.skip(length.checked_add(padding(length)).ok_or("the file ends within the header")?)?;
                 continue;
@@ -161,7 +166,10 @@ impl Bytes<'_> {
             self.skip(padding(length))?;
             let value = match kind {
                 None => Value::Text(decoded(&bytes).trim_matches(['\0', ' ']).to_owned()),
-                Some(kind) => Value::Numbers(bytes.chunks_exact(kind.width()).map(|one| kind.value(one, Order::Big)).collect(), kind),
+                Some(kind) => Value::Numbers(
+                    bytes.chunks_exact(kind.width()).map(|one| kind.value(one, Order::Big)).collect(),
+                    kind,
+                ),
             };
             kept.push(name, value);
         }

@@ -23,7 +23,11 @@ pub(super) fn read(mut source: Source) -> Result<Scan, Cause> {
     let says = start + points(rows, columns)? * kind.width() as u64;
     if says != source.length {
         let length = source.length;
-        return Err(format!("the file has {length} bytes, but {rows} by {columns} numbers of type {:?} need {says}", about.descr).into());
+        return Err(format!(
+            "the file has {length} bytes, but {rows} by {columns} numbers of type {:?} need {says}",
+            about.descr
+        )
+        .into());
     }
     // A row is a scan line along x, as in images: C order of rows and columns is Fortran order of x and y.
     let layout = if about.layout == Layout::Rows { Layout::Columns } else { Layout::Rows };
@@ -41,7 +45,12 @@ fn line(source: &mut Source) -> Result<(String, u64), Cause> {
     let width = match version {
         1 => 2,
         2 | 3 => 4,
-        other => return Err(format!("unsupported version {other} of the npy format\nhelp: use version 1, 2 or 3").into()),
+        other => {
+            return Err(format!(
+                "unsupported version {other} of the npy format\nhelp: use version 1, 2 or 3"
+            )
+            .into());
+        }
     };
     let mut length = Vec::new();
     source.file.by_ref().take(width).read_to_end(&mut length)?;
@@ -103,12 +112,20 @@ impl Line<'_> {
             self.expect(':')?;
             match key.as_str() {
                 "descr" if self.rest.trim_start().starts_with(['[', '(']) => {
-                    return Err("structured array with named fields\nhelp: save a two-dimensional array of numbers".into());
+                    return Err(
+                        "structured array with named fields\nhelp: save a two-dimensional array of numbers"
+                            .into(),
+                    );
                 }
                 "descr" => descr = Some(self.quoted()?),
                 "fortran_order" => layout = Some(self.layout()?),
                 "shape" => shape = Some(self.shape()?),
-                other => return Err(format!("unknown entry {other:?} in the header\nhelp: expected descr, fortran_order, shape").into()),
+                other => {
+                    return Err(format!(
+                        "unknown entry {other:?} in the header\nhelp: expected descr, fortran_order, shape"
+                    )
+                    .into());
+                }
             }
             if !self.eat(',') {
                 self.expect('}')?;
@@ -159,8 +176,13 @@ impl Line<'_> {
         self.expect('(')?;
         while !self.eat(')') {
             let text = self.rest.trim_start();
-            let (digits, rest) = text.split_at(text.find(|sign: char| !sign.is_ascii_digit()).unwrap_or(text.len()));
-            shape.push(digits.parse().map_err(|_| format!("the shape has {digits:?} instead of a number of points"))?);
+            let (digits, rest) =
+                text.split_at(text.find(|sign: char| !sign.is_ascii_digit()).unwrap_or(text.len()));
+            shape.push(
+                digits
+                    .parse()
+                    .map_err(|_| format!("the shape has {digits:?} instead of a number of points"))?,
+            );
             // Python 2 put an L behind long numbers.
             self.rest = rest.strip_prefix('L').unwrap_or(rest);
             if !self.eat(',') {

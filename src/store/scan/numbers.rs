@@ -40,7 +40,8 @@ impl Number {
         matches!(self, Self::F32 | Self::F64)
     }
 
-    /// Default fill value of NetCDF (`NC_FILL_*` of netcdf.h), which marks numbers that were never written; bytes have none.
+    /// Default fill value of NetCDF (`NC_FILL_*` of netcdf.h), which marks numbers that were never written;
+    /// bytes have none.
     pub(super) const fn never_written(self) -> Option<f64> {
         Some(match self {
             Self::I8 | Self::U8 => return None,
@@ -94,9 +95,14 @@ pub(super) enum Layout {
 /// Number of points of a field of this extent, if a scan can have as many.
 pub(super) fn points(rows: u64, columns: u64) -> Result<u64, Cause> {
     match rows.checked_mul(columns) {
-        Some(0) => Err(format!("it says that it has {rows} by {columns} points, so that it holds no surface").into()),
+        Some(0) => {
+            Err(format!("it says that it has {rows} by {columns} points, so that it holds no surface").into())
+        }
         Some(count) if count <= MOST_POINTS => Ok(count),
-        _ => Err(format!("it says that it has {rows} by {columns} points, and a surface may have {MOST_POINTS}").into()),
+        _ => Err(format!(
+            "it says that it has {rows} by {columns} points, and a surface may have {MOST_POINTS}"
+        )
+        .into()),
     }
 }
 
@@ -111,7 +117,13 @@ pub(in crate::store) fn room(count: u64) -> Result<Vec<f64>, Cause> {
 }
 
 /// Passes `count` numbers to `each`, in the order of the file.
-pub(super) fn stream(from: &mut impl Read, kind: Number, order: Order, count: u64, mut each: impl FnMut(f64)) -> Result<(), Cause> {
+pub(super) fn stream(
+    from: &mut impl Read,
+    kind: Number,
+    order: Order,
+    count: u64,
+    mut each: impl FnMut(f64),
+) -> Result<(), Cause> {
     let width = kind.width();
     let mut buffer = [0; AT_ONCE];
     let mut left = count * width as u64;

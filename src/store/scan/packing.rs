@@ -21,13 +21,18 @@ pub(super) struct Packing {
 }
 
 impl Packing {
-    /// Packing of a variable of this kind. `defaults` is true for NetCDF, where numbers that were never written have a value of their own.
+    /// Packing of a variable of this kind. `defaults` is true for NetCDF, where numbers that were never
+    /// written have a value of their own.
     pub(super) fn of(attributes: &Attributes, kind: Number, defaults: bool) -> Result<Self, Cause> {
         let scale = attributes.number("scale_factor");
         let offset = attributes.number("add_offset");
-        if scale.is_some_and(|scale| !scale.is_finite() || scale.abs() < f64::MIN_POSITIVE) || offset.is_some_and(|by| !by.is_finite()) {
+        if scale.is_some_and(|scale| !scale.is_finite() || scale.abs() < f64::MIN_POSITIVE)
+            || offset.is_some_and(|by| !by.is_finite())
+        {
             let [scale, offset] = [scale.unwrap_or(1.0), offset.unwrap_or(0.0)];
-            return Err(format!("its heights have the scale_factor {scale} and the add_offset {offset}").into());
+            return Err(
+                format!("its heights have the scale_factor {scale} and the add_offset {offset}").into()
+            );
         }
         let stored = |value: f64| if kind == Number::F32 { f64::from(value as f32) } else { value };
         let named = FILLS.iter().filter_map(|name| attributes.numbers(name)).flat_map(|(values, _)| values);
@@ -46,10 +51,18 @@ impl Packing {
         if let Some(([low, high], kind)) = attributes.numbers("valid_range") {
             return ([*low, *high], kind.is_float());
         }
-        let bound = |name: &str| attributes.numbers(name).and_then(|(values, kind)| Some((*values.first()?, kind.is_float())));
+        let bound = |name: &str| {
+            attributes.numbers(name).and_then(|(values, kind)| Some((*values.first()?, kind.is_float())))
+        };
         let (low, high) = (bound("valid_min"), bound("valid_max"));
         let wide = [low, high].into_iter().flatten().any(|(_, float)| float);
-        ([low.map_or(f64::NEG_INFINITY, |(value, _)| value), high.map_or(f64::INFINITY, |(value, _)| value)], wide)
+        (
+            [
+                low.map_or(f64::NEG_INFINITY, |(value, _)| value),
+                high.map_or(f64::INFINITY, |(value, _)| value),
+            ],
+            wide,
+        )
     }
 
     /// Value of a stored number; NaN where the point is missing.

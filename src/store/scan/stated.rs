@@ -1,16 +1,25 @@
 //! Sizes and units that files state in attributes of the field, its groups or the root.
 //!
-//! A name such as `pixel_size_m`, `scanSizeX` or `length` is a quantity (size of the scan, or distance of its points), an axis if it is one
-//! of two, and a unit if it ends with one.
+//! A name such as `pixel_size_m`, `scanSizeX` or `length` is a quantity (size of the scan, or distance of its
+//! points), an axis if it is one of two, and a unit if it ends with one.
 
 use super::attributes::{Attributes, Value};
 use crate::lengths::{metres, quantity};
 
 /// Attributes with the unit of the heights.
-const HEIGHT_UNITS: [&str; 8] = ["unit", "units", "z_unit", "z_units", "height_unit", "height_units", "unit_z", "units_z"];
+const HEIGHT_UNITS: [&str; 8] =
+    ["unit", "units", "z_unit", "z_units", "height_unit", "height_units", "unit_z", "units_z"];
 /// Attributes with the unit of sizes, besides those named after the size itself.
-const SIZE_UNITS: [&str; 8] =
-    ["length_unit", "length_units", "lateral_unit", "lateral_units", "xy_unit", "xy_units", "pixel_unit", "pixel_units"];
+const SIZE_UNITS: [&str; 8] = [
+    "length_unit",
+    "length_units",
+    "lateral_unit",
+    "lateral_units",
+    "xy_unit",
+    "xy_units",
+    "pixel_unit",
+    "pixel_units",
+];
 /// Names of the size of a scan, without axis and unit.
 const SIZES: [&str; 13] = [
     "length",
@@ -150,12 +159,14 @@ struct Entry {
     values: Vec<f64>,
 }
 
-/// Every distance of points along x and y that the attributes state, the innermost first. `counts` are the points along x and y.
+/// Every distance of points along x and y that the attributes state, the innermost first. `counts` are the
+/// points along x and y.
 pub(super) fn pixels(levels: &[Attributes], counts: [usize; 2]) -> Vec<(String, [Pixel; 2])> {
     let counts = counts.map(|count| count as f64);
     let mut found = Vec::new();
     for level in levels {
-        let entries: Vec<Entry> = level.iter().filter_map(|(name, value)| entry(level, name, value, counts)).collect();
+        let entries: Vec<Entry> =
+            level.iter().filter_map(|(name, value)| entry(level, name, value, counts)).collect();
         for pixel in [true, false] {
             let one = |entry: &Entry, at: usize| {
                 let stated = *entry.values.get(at).or(entry.values.first())?;
@@ -163,12 +174,18 @@ pub(super) fn pixels(levels: &[Attributes], counts: [usize; 2]) -> Vec<(String, 
                 let (value, extent) = if pixel { (stated, stated * count) } else { (stated / count, stated) };
                 Some(Pixel { value, extent, metres: entry.of.metres })
             };
-            let of = |along| entries.iter().filter(move |entry| entry.of.pixel == pixel && entry.of.along == along);
+            let of = |along| {
+                entries.iter().filter(move |entry| entry.of.pixel == pixel && entry.of.along == along)
+            };
             for entry in of(Along::Both) {
                 found.extend(one(entry, 0).zip(one(entry, 1)).map(|(x, y)| (entry.name.clone(), [x, y])));
             }
             for (x, y) in of(Along::X).zip(of(Along::Y)) {
-                found.extend(one(x, 0).zip(one(y, 1)).map(|(along_x, along_y)| (format!("{} and {}", x.name, y.name), [along_x, along_y])));
+                found.extend(
+                    one(x, 0)
+                        .zip(one(y, 1))
+                        .map(|(along_x, along_y)| (format!("{} and {}", x.name, y.name), [along_x, along_y])),
+                );
             }
         }
     }
@@ -181,7 +198,8 @@ fn entry(level: &Attributes, name: &str, value: &Value, counts: [f64; 2]) -> Opt
     let values = match value {
         Value::Numbers(values, kind) => {
             // Integers equal to the numbers of points are these numbers.
-            let points = !kind.is_float() && values.iter().all(|value| counts.contains(value)) && of.metres.is_none();
+            let points =
+                !kind.is_float() && values.iter().all(|value| counts.contains(value)) && of.metres.is_none();
             values.iter().copied().filter(|_| !points).collect()
         }
         Value::Text(text) => {

@@ -1,10 +1,11 @@
 //! Numbers as text: a matrix, points x, y, z on a grid, or one column of a stated width.
 //!
-//! The first line of numbers determines the separator of the file; quotation marks around cells do not count. Lines before it are the
-//! heading, with or without a comment sign: sizes and units in the words of several programs, and names of columns.
+//! The first line of numbers determines the separator of the file; quotation marks around cells do not count.
+//! Lines before it are the heading, with or without a comment sign: sizes and units in the words of several
+//! programs, and names of columns.
 //!
-//! A line of a matrix is a scan line along x, as in the exports of Gwyddion and in SurfaceTopography: the place in the line is x, the
-//! line is y.
+//! A line of a matrix is a scan line along x, as in the exports of Gwyddion and in SurfaceTopography: the
+//! place in the line is x, the line is y.
 
 use std::io::{BufRead, Read};
 
@@ -42,7 +43,9 @@ pub(super) fn read(source: Source, asked: &Asked<'_>) -> Result<Scan, Cause> {
         let text = decoded(&line);
         let text = if number == 1 { text.strip_prefix('\u{feff}').unwrap_or(&text) } else { &text };
         let text = text.strip_suffix('\n').unwrap_or(text);
-        matrix.line(text.strip_suffix('\r').unwrap_or(text)).map_err(|cause| format!("its line {number}: {cause}"))?;
+        matrix
+            .line(text.strip_suffix('\r').unwrap_or(text))
+            .map_err(|cause| format!("its line {number}: {cause}"))?;
     }
     matrix.finish()
 }
@@ -113,7 +116,9 @@ impl Matrix {
     fn row(&mut self, line: &str) -> Result<(), Cause> {
         let separator = *self.separator.get_or_insert_with(|| match Separator::of(line) {
             // One number with a decimal comma, and not two.
-            Separator::Sign(',') if self.width.is_some() && line.matches(',').count() == 1 => Separator::Blank,
+            Separator::Sign(',') if self.width.is_some() && line.matches(',').count() == 1 => {
+                Separator::Blank
+            }
             separator => separator,
         });
         let before = self.values.len();
@@ -125,8 +130,13 @@ impl Matrix {
         if self.rows == 0 {
             self.columns = count;
         } else if count != self.columns && self.width.is_none() {
-            let help = "each line must have the same count; skip lines of a heading with surface.skip_lines (--skip-lines)";
-            return Err(format!("{count} numbers, but the previous lines have {}\nhelp: {help}", self.columns).into());
+            let help = "each line must have the same count; skip lines of a heading with surface.skip_lines \
+                 (--skip-lines)";
+            return Err(format!(
+                "{count} numbers, but the previous lines have {}\nhelp: {help}",
+                self.columns
+            )
+            .into());
         }
         self.rows += 1;
         let open = matches!(separator, Separator::Sign(sign) if line.trim_matches(' ').ends_with(sign));
@@ -140,7 +150,9 @@ impl Matrix {
         }
         if self.values.len() == self.values.capacity() {
             let more = self.values.len().max(1 << 12);
-            self.values.try_reserve(more).map_err(|_| "its heights do not fit into the memory of this machine")?;
+            self.values
+                .try_reserve(more)
+                .map_err(|_| "its heights do not fit into the memory of this machine")?;
         }
         self.values.push(value);
         Ok(())
@@ -148,7 +160,9 @@ impl Matrix {
 
     fn finish(mut self) -> Result<Scan, Cause> {
         if self.rows == 0 {
-            return Err("no line of numbers\nhelp: give a matrix of heights, or three columns x, y and z".into());
+            return Err(
+                "no line of numbers\nhelp: give a matrix of heights, or three columns x, y and z".into()
+            );
         }
         // A separator behind the last number of every line is not one more column.
         if self.closed == 0 && self.columns > 1 {
@@ -189,7 +203,8 @@ impl Matrix {
         let count = self.values.len() as u64;
         if width == 0 || !count.is_multiple_of(width) {
             return Err(format!(
-                "its {count} numbers are no whole number of lines of {width} points\nhelp: correct surface.width (--width); {}",
+                "its {count} numbers are no whole number of lines of {width} points\nhelp: correct \
+                 surface.width (--width); {}",
                 widths(count)
             )
             .into());
@@ -206,9 +221,12 @@ impl Matrix {
         Ok(scan(meaning, notes, Scan::bare(heights, FirstIndex::Y)))
     }
 
-    /// The heights of points. Where the file says a unit of the heights, it holds for x and y, unless these have their own.
+    /// The heights of points. Where the file says a unit of the heights, it holds for x and y, unless these
+    /// have their own.
     fn positions(mut self, places: [usize; 3]) -> Result<Scan, Cause> {
-        if let [Some(x), Some(y), Some(z)] = places.map(|place| self.named.get(place).filter(|_| self.named.len() as u64 == self.columns)) {
+        if let [Some(x), Some(y), Some(z)] =
+            places.map(|place| self.named.get(place).filter(|_| self.named.len() as u64 == self.columns))
+        {
             self.heading.units_of_points(x, y, z);
         }
         let mut notes = self.notes();
@@ -217,13 +235,18 @@ impl Matrix {
         let found = if places == [0, 1, 2] && columns == 3 {
             grid(&values)?
         } else {
-            let chosen: Vec<f64> =
-                values.chunks_exact(columns).flat_map(|row| places.map(|place| row.get(place).copied().unwrap_or(f64::NAN))).collect();
+            let chosen: Vec<f64> = values
+                .chunks_exact(columns)
+                .flat_map(|row| places.map(|place| row.get(place).copied().unwrap_or(f64::NAN)))
+                .collect();
             grid(&chosen)?
         };
         drop(values);
         if found.absent > 0 {
-            notes.push(format!("{} of the grid without a line, taken as missing", counted(found.absent, "point")));
+            notes.push(format!(
+                "{} of the grid without a line, taken as missing",
+                counted(found.absent, "point")
+            ));
         }
         let extent = [found.heights.nrows() as u64, found.heights.ncols() as u64];
         let meaning = self.heading.of_points(found.spacing, extent)?;
@@ -234,8 +257,9 @@ impl Matrix {
 
     /// Sentences on how the text was read.
     fn notes(&self) -> Vec<String> {
-        let heading =
-            (self.unsigned > 0).then(|| format!("{} before the numbers, read as a heading", counted(self.unsigned as usize, "line")));
+        let heading = (self.unsigned > 0).then(|| {
+            format!("{} before the numbers, read as a heading", counted(self.unsigned as usize, "line"))
+        });
         let comma = self.decimals.comma.then(|| "decimal commas".to_owned());
         [heading, comma].into_iter().flatten().collect()
     }
@@ -250,7 +274,8 @@ impl Matrix {
         .into()
     }
 
-    /// True if the first of two columns increases from above 0 and the second, above 0, decreases by more than a decade, as a spectrum does.
+    /// True if the first of two columns increases from above 0 and the second, above 0, decreases by more
+    /// than a decade, as a spectrum does.
     fn decays(&self) -> bool {
         let pairs = || self.values.chunks_exact(2);
         let positive = pairs().all(|pair| pair.iter().all(|value| *value > 0.0));
@@ -281,7 +306,11 @@ fn line_scan() -> Cause {
 /// Possible numbers of points per line.
 fn widths(count: u64) -> String {
     let root = count.isqrt();
-    if root * root == count { format!("{count} = {root} x {root}") } else { format!("{count} is no square number") }
+    if root * root == count {
+        format!("{count} = {root} x {root}")
+    } else {
+        format!("{count} is no square number")
+    }
 }
 
 /// A scan with the unit and size of a heading.

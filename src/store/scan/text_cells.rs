@@ -70,7 +70,8 @@ fn outside_quotes(line: &str) -> String {
 
 /// True if a line is several numbers between blanks, each with a comma inside.
 fn has_decimal_commas(line: &str) -> bool {
-    let mut cells = line.split_whitespace().map(|cell| cell.trim_matches(',').contains(',') && !cell.ends_with(','));
+    let mut cells =
+        line.split_whitespace().map(|cell| cell.trim_matches(',').contains(',') && !cell.ends_with(','));
     line.split_whitespace().nth(1).is_some() && cells.all(|inside| inside)
 }
 
@@ -81,7 +82,9 @@ fn is_missing(cell: &str) -> bool {
 
 /// A number with a decimal comma.
 fn with_comma(cell: &str) -> Option<f64> {
-    (cell.matches(',').count() == 1 && !cell.contains('.')).then(|| cell.replace(',', ".").parse().ok()).flatten()
+    (cell.matches(',').count() == 1 && !cell.contains('.'))
+        .then(|| cell.replace(',', ".").parse().ok())
+        .flatten()
 }
 
 /// True for a cell of a row: a number, or a missing point.
@@ -120,8 +123,16 @@ impl Decimals {
             }
         };
         if self.point && self.comma {
-            return Err(format!("{:?}: the numbers have decimal points and decimal commas\nhelp: write one of them", shown()).into());
+            return Err(format!(
+                "{:?}: the numbers have decimal points and decimal commas\nhelp: write one of them",
+                shown()
+            )
+            .into());
         }
-        if value.is_finite() { Ok(value) } else { Err(format!("{:?} is not a finite number", shown()).into()) }
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(format!("{:?} is not a finite number", shown()).into())
+        }
     }
 }

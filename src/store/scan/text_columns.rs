@@ -39,7 +39,10 @@ pub(super) fn columns(line: &str) -> Option<Vec<Column>> {
         match found.last_mut() {
             // "X [um]" between blanks is one column.
             Some(last)
-                if separator == Separator::Blank && column.name.is_empty() && last.unit.is_none() && cell.starts_with(['[', '(']) =>
+                if separator == Separator::Blank
+                    && column.name.is_empty()
+                    && last.unit.is_none()
+                    && cell.starts_with(['[', '(']) =>
             {
                 last.unit = column.unit;
             }
@@ -81,7 +84,9 @@ impl Column {
     /// Quantity of the column, if its name states it.
     pub(super) fn role(&self) -> Option<Role> {
         let name = self.name.as_str();
-        if ["q", "k", "c", "c1d", "c2d", "ciso"].contains(&name) || SPECTRA.iter().any(|part| name.contains(part)) {
+        if ["q", "k", "c", "c1d", "c2d", "ciso"].contains(&name)
+            || SPECTRA.iter().any(|part| name.contains(part))
+        {
             return Some(Role::Spectrum);
         }
         let coordinate = |sign: char| name.strip_prefix(sign).is_some_and(|rest| COORDINATES.contains(&rest));
@@ -89,7 +94,10 @@ impl Column {
             Some(Role::X)
         } else if coordinate('y') {
             Some(Role::Y)
-        } else if coordinate('z') || name == "h" || ["height", "topograph", "elevation", "zsensor"].iter().any(|part| name.contains(part)) {
+        } else if coordinate('z')
+            || name == "h"
+            || ["height", "topograph", "elevation", "zsensor"].iter().any(|part| name.contains(part))
+        {
             Some(Role::Height)
         } else {
             None

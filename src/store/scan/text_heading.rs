@@ -1,7 +1,7 @@
 //! Size and units in the heading of a text.
 //!
-//! These are the words of Gwyddion, of SurfaceTopography, of SPIP, and of several interferometers and profilers. All other
-//! entries of a heading are passed over.
+//! These are the words of Gwyddion, of SurfaceTopography, of SPIP, and of several interferometers and
+//! profilers. All other entries of a heading are passed over.
 
 use super::text_cells::{Separator, is_value};
 use super::text_columns::Column;
@@ -89,26 +89,32 @@ impl Heading {
         let small = small.as_str();
         if is_size(small) && has_ambiguous_comma(value) {
             return Err(format!(
-                "its {key:?} of {value:?} has a comma that may be a decimal comma or separate thousands\nhelp: write a decimal point, or export in English"
+                "its {key:?} of {value:?} has a comma that may be a decimal comma or separate \
+                 thousands\nhelp: write a decimal point, or export in English"
             )
             .into());
         }
-        let word = || Some(value.trim_matches(['[', ']', '(', ')', ' ', '"']).to_owned()).filter(|word| !word.is_empty());
+        let word = || {
+            Some(value.trim_matches(['[', ']', '(', ')', ' ', '"']).to_owned())
+                .filter(|word| !word.is_empty())
+        };
         let [pixel_x, pixel_y] = &mut self.pixel;
         match small {
             "width" | "breite" => put(&mut self.width, Quantity::of(value)),
             "height" | "h\u{f6}he" => put(&mut self.height, Quantity::of(value)),
             "size" | "scan size" | "scan range" | "image size" | "scan area" => self.both(value),
-            "pixel size" | "pixelsize" | "pitch" | "spacing" | "pixel pitch" | "grid spacing" | "xy calibration" | "lateral sampling" => {
-                put(pixel_x, Quantity::of(value))
+            "pixel size" | "pixelsize" | "pitch" | "spacing" | "pixel pitch" | "grid spacing"
+            | "xy calibration" | "lateral sampling" => put(pixel_x, Quantity::of(value)),
+            "unit" | "units" | "z unit" | "z units" | "unit z" | "height unit" | "height units"
+            | "value units" | "value unit" | "werteinheiten" | "werteinheit" | "data unit" | "unit data" => {
+                put(&mut self.value_unit, word())
             }
-            "unit" | "units" | "z unit" | "z units" | "unit z" | "height unit" | "height units" | "value units" | "value unit"
-            | "werteinheiten" | "werteinheit" | "data unit" | "unit data" => put(&mut self.value_unit, word()),
-            "xy unit" | "lateral unit" | "lateral units" | "x unit" | "unit x" => put(&mut self.width_unit, word()),
+            "xy unit" | "lateral unit" | "lateral units" | "x unit" | "unit x" => {
+                put(&mut self.width_unit, word())
+            }
             "y unit" | "unit y" => put(&mut self.height_unit, word()),
-            "w" | "nx" | "ncols" | "horizontal" | "columns" | "samples/line" | "points per line" | "number of columns" => {
-                put(&mut self.values_in_line, value.parse().ok())
-            }
+            "w" | "nx" | "ncols" | "horizontal" | "columns" | "samples/line" | "points per line"
+            | "number of columns" => put(&mut self.values_in_line, value.parse().ok()),
             "h" | "ny" | "nrows" | "vertical" | "rows" | "lines" | "number of lines" | "number of rows" => {
                 put(&mut self.lines, value.parse().ok())
             }
@@ -133,8 +139,11 @@ impl Heading {
 
     /// Takes in two numbers of points, as in `"Size","24","24"`, or one or two sizes.
     fn both(&mut self, value: &str) -> Option<()> {
-        let words: Vec<&str> = value.split([' ', 'x', '\u{d7}', '*']).filter(|part| !part.is_empty()).collect();
-        if let [Ok(columns), Ok(rows)] = words.iter().map(|word| word.parse()).collect::<Vec<Result<u64, _>>>()[..] {
+        let words: Vec<&str> =
+            value.split([' ', 'x', '\u{d7}', '*']).filter(|part| !part.is_empty()).collect();
+        if let [Ok(columns), Ok(rows)] =
+            words.iter().map(|word| word.parse()).collect::<Vec<Result<u64, _>>>()[..]
+        {
             put(&mut self.values_in_line, Some(columns))?;
             return put(&mut self.lines, Some(rows));
         }
@@ -150,7 +159,9 @@ impl Heading {
 
     /// Takes in the units of columns of points.
     pub(super) fn units_of_points(&mut self, x: &Column, y: &Column, z: &Column) {
-        for (place, column) in [(&mut self.width_unit, x), (&mut self.height_unit, y), (&mut self.value_unit, z)] {
+        for (place, column) in
+            [(&mut self.width_unit, x), (&mut self.height_unit, y), (&mut self.value_unit, z)]
+        {
             *place = column.unit.clone().or_else(|| place.take());
         }
     }
@@ -173,7 +184,9 @@ impl Heading {
         let (factor, unit) = self.scale()?;
         let of_x = self.width_unit.as_ref().or(unit);
         let of_y = self.height_unit.as_ref().or(of_x);
-        let along = |spacing: f64, points: u64, unit| size(Some(&Quantity { value: spacing * points as f64, unit: None }), unit);
+        let along = |spacing: f64, points: u64, unit| {
+            size(Some(&Quantity { value: spacing * points as f64, unit: None }), unit)
+        };
         let size_m = along(spacing[0], x, of_x)?.zip(along(spacing[1], y, of_y)?).map(|(x, y)| [x, y]);
         Ok(Meaning { factor, unit: unit.cloned(), size_m })
     }
@@ -192,7 +205,9 @@ impl Heading {
 
     /// Units and size of a matrix with the given numbers of lines and of values in a line.
     pub(super) fn meaning(&self, [lines, values]: [u64; 2]) -> Result<Meaning, Cause> {
-        for (said, found, what) in [(self.lines, lines, "lines"), (self.values_in_line, values, "values in a line")] {
+        for (said, found, what) in
+            [(self.lines, lines, "lines"), (self.values_in_line, values, "values in a line")]
+        {
             if let Some(said) = said.filter(|said| *said != found) {
                 return Err(format!("its heading says that it has {said} {what}, and it has {found}").into());
             }
@@ -207,7 +222,11 @@ impl Heading {
         let by_lines = along_y.as_ref().or(along_x.as_ref()).map(|pixel| pixel.times(lines));
         let height = size(self.height.as_ref().or(by_lines.as_ref()), across)?;
         let width = size(self.width.as_ref().or(by_values.as_ref()), lateral)?;
-        Ok(Meaning { factor, unit: unit.cloned(), size_m: width.zip(height).map(|(width, height)| [width, height]) })
+        Ok(Meaning {
+            factor,
+            unit: unit.cloned(),
+            size_m: width.zip(height).map(|(width, height)| [width, height]),
+        })
     }
 }
 
@@ -237,7 +256,8 @@ fn along(small: &str) -> Option<(bool, Of)> {
     };
     let of = match what {
         "length" | "size" | "range" | "scan size" | "scan range" | "scan length" | "width" => Of::Size,
-        "pitch" | "spacing" | "step" | "step size" | "increment" | "pixel size" | "pixel pitch" | "delta" | "sampling" => Of::Pixel,
+        "pitch" | "spacing" | "step" | "step size" | "increment" | "pixel size" | "pixel pitch" | "delta"
+        | "sampling" => Of::Pixel,
         "pixels" | "points" | "pixel count" | "number of points" | "number of pixels" => Of::Count,
         _ => return None,
     };
@@ -254,7 +274,8 @@ fn is_size(small: &str) -> bool {
 fn has_ambiguous_comma(text: &str) -> bool {
     let rest = text.trim_start_matches(|sign: char| sign.is_ascii_digit() || matches!(sign, '+' | '-'));
     let Some(rest) = rest.strip_prefix(',').filter(|_| rest.len() < text.len()) else { return false };
-    rest.bytes().take_while(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b',')).count() >= 3 && quantity(text).is_none()
+    rest.bytes().take_while(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b',')).count() >= 3
+        && quantity(text).is_none()
 }
 
 /// Puts an entry in its place; nothing, if another entry has the place.

@@ -1,7 +1,7 @@
 //! X3P (ISO 25178-72, before that ISO 5436-2): a zip archive of a description in XML and the numbers.
 //!
-//! Lengths are in metres, always. The first point of the data is followed by its neighbour along x, so that a column of
-//! heights here is a line of the file.
+//! Lengths are in metres, always. The first point of the data is followed by its neighbour along x, so that a
+//! column of heights here is a line of the file.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -22,14 +22,16 @@ use super::{Cause, FirstIndex, Scan, Source};
 const MAIN: &str = "main.xml";
 /// Bytes that the description may have: some kilobytes is what it has.
 const MOST_XML: u64 = 1 << 24;
-/// Elements that it may have; those of instruments have some forty. They are read by a function that calls itself for what is inside, and as many of them, one
-/// inside the other, leave room on the stack of a thread.
+/// Elements that it may have; those of instruments have some forty. They are read by a function that calls
+/// itself for what is inside, and as many of them, one inside the other, leave room on the stack of a thread.
 const MOST_ELEMENTS: usize = 256;
 /// Nodes that it may have, remarks and the blanks between elements among them.
 const MOST_NODES: u32 = 1 << 16;
-/// Attributes that all of them may have together; those of instruments have one or two. The parser compares the attributes of an element with one another.
+/// Attributes that all of them may have together; those of instruments have one or two. The parser compares
+/// the attributes of an element with one another.
 const MOST_ATTRIBUTES: usize = 1024;
-/// Compression ratio of deflate on zeros: a part of an archive is at most this many times larger than its compressed size.
+/// Compression ratio of deflate on zeros: a part of an archive is at most this many times larger than its
+/// compressed size.
 const MOST_PACKED: u64 = 1100;
 
 /// An archive on the disk.
@@ -42,7 +44,8 @@ pub(super) fn read(source: Source) -> Result<Scan, Cause> {
     let names = Names::of(&archive)?;
     let text = description(&mut archive, &names)?;
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(&text, options).map_err(|error| format!("{MAIN} is damaged: {error}"))?;
+    let document = Document::parse_with_options(&text, options)
+        .map_err(|error| format!("{MAIN} is damaged: {error}"))?;
     let about = About::of(document.root_element())?;
     // Of at most 2^28 points, so that nothing overflows.
     let count = about.shape[0] * about.shape[1];
@@ -86,7 +89,8 @@ fn damaged(error: &ZipError) -> Cause {
     format!("damaged zip archive: {error}").into()
 }
 
-/// The parts of an archive by their paths from the folder that has the description, which is the root or one folder in it.
+/// The parts of an archive by their paths from the folder that has the description, which is the root or one
+/// folder in it.
 struct Names {
     parts: HashMap<String, usize>,
     folder: String,
@@ -94,7 +98,9 @@ struct Names {
 
 impl Names {
     fn of(archive: &Archive) -> Result<Self, Cause> {
-        let twice = |name: &str| -> Cause { format!("the zip archive has two parts named {name:?}\nhelp: save the scan again").into() };
+        let twice = |name: &str| -> Cause {
+            format!("the zip archive has two parts named {name:?}\nhelp: save the scan again").into()
+        };
         let mut parts = HashMap::new();
         for (place, name) in archive.file_names().enumerate() {
             let name = plain(&name.map_err(|error| damaged(&error))?);
@@ -109,16 +115,18 @@ impl Names {
         if parts.contains_key(MAIN) {
             return Ok(Self { parts, folder: String::new() });
         }
-        let in_folder = |name: &str| matches!(name.split_once('/'), Some((folder, MAIN)) if folder != "__MACOSX");
+        let in_folder =
+            |name: &str| matches!(name.split_once('/'), Some((folder, MAIN)) if folder != "__MACOSX");
         let found: Vec<String> = parts.keys().filter(|name| in_folder(name)).cloned().collect();
         match &found[..] {
             [one] => Ok(Self { folder: one.trim_end_matches(MAIN).to_owned(), parts }),
             [] if parts.keys().any(|name| is_of_container(name.as_bytes())) => Err(container().into()),
             [] => Err(format!("zip archive without {MAIN}: not an X3P file").into()),
-            many => {
-                Err(format!("zip archive with {} X3P folders instead of one\nhelp: unpack it, and zip one of the folders", many.len())
-                    .into())
-            }
+            many => Err(format!(
+                "zip archive with {} X3P folders instead of one\nhelp: unpack it, and zip one of the folders",
+                many.len()
+            )
+            .into()),
         }
     }
 
@@ -180,7 +188,11 @@ fn part<'a>(
 /// Makes sure that a part ends here, at which its checksum is compared too.
 fn ends(mut part: impl Read, name: &str) -> Result<(), Cause> {
     let more = part.read(&mut [0]).map_err(|error| format!("{name:?} is damaged: {error}"))?;
-    if more == 0 { Ok(()) } else { Err(format!("{name:?} has more bytes than its entry in the archive states").into()) }
+    if more == 0 {
+        Ok(())
+    } else {
+        Err(format!("{name:?} has more bytes than its entry in the archive states").into())
+    }
 }
 
 /// Content of the description.
@@ -209,10 +221,13 @@ impl About {
             return Err(format!("{layers} layers instead of 1").into());
         }
         if inside(root, &["Record3", "DataList"]).is_some() {
-            return Err("heights stored in XML are not supported\nhelp: save the scan with binary data".into());
+            return Err(
+                "heights stored in XML are not supported\nhelp: save the scan with binary data".into()
+            );
         }
         let link = |name| word(inside(root, &["Record3", "DataLink"])?, name);
-        let data = link("PointDataLink").ok_or_else(|| format!("{MAIN} has no link to the heights (PointDataLink)"))?;
+        let data = link("PointDataLink")
+            .ok_or_else(|| format!("{MAIN} has no link to the heights (PointDataLink)"))?;
         let height = inside(axes, &["CZ"]).ok_or_else(|| format!("{MAIN} describes no axis CZ"))?;
         let kind = match word(height, "DataType").as_deref() {
             Some("I") => Number::I16,
@@ -220,7 +235,11 @@ impl About {
             Some("F") => Number::F32,
             Some("D") => Number::F64,
             other => {
-                return Err(format!("unsupported data type {:?} of the heights\nhelp: expected I, L, F or D", other.unwrap_or("")).into());
+                return Err(format!(
+                    "unsupported data type {:?} of the heights\nhelp: expected I, L, F or D",
+                    other.unwrap_or("")
+                )
+                .into());
             }
         };
         let (increment, offset) = (number(height, "Increment")?, number(height, "Offset")?);
@@ -235,8 +254,17 @@ fn size(axes: Node<'_, '_>, name: &str, points: u64) -> Result<Option<f64>, Caus
     let axis = inside(axes, &[name]).ok_or_else(|| format!("{MAIN} describes no axis {name}"))?;
     match word(axis, "AxisType").as_deref() {
         None | Some("I") => {}
-        Some("A") => return Err(format!("the points along axis {name} are not evenly spaced, which is not supported").into()),
-        Some(other) => return Err(format!("unsupported type {other:?} of axis {name}\nhelp: expected I (incremental)").into()),
+        Some("A") => {
+            return Err(format!(
+                "the points along axis {name} are not evenly spaced, which is not supported"
+            )
+            .into());
+        }
+        Some(other) => {
+            return Err(
+                format!("unsupported type {other:?} of axis {name}\nhelp: expected I (incremental)").into()
+            );
+        }
     }
     let Some(increment) = number(axis, "Increment")? else {
         return Ok(None);
@@ -251,7 +279,9 @@ fn size(axes: Node<'_, '_>, name: &str, points: u64) -> Result<Option<f64>, Caus
 
 /// The node that these names lead to, whatever namespace they are in.
 fn inside<'a, 'input>(node: Node<'a, 'input>, names: &[&str]) -> Option<Node<'a, 'input>> {
-    names.iter().try_fold(node, |node, name| node.children().find(|child| child.is_element() && child.tag_name().name() == *name))
+    names.iter().try_fold(node, |node, name| {
+        node.children().find(|child| child.is_element() && child.tag_name().name() == *name)
+    })
 }
 
 /// The text of a node inside another, if it is there and not empty.

@@ -35,7 +35,10 @@ pub(super) fn numbers(header: &SurfaceHeader) -> [(&'static str, Value); 10] {
 pub(super) fn lines(header: &SurfaceHeader) -> Vec<Line> {
     let Some(quality) = of(header) else { return Vec::new() };
     let count = |count: u64| counted(usize::try_from(count).unwrap_or(usize::MAX), "point");
-    let mut lines = vec![("outliers", format!("{} replaced, {} left", count(quality.outlier_count), quality.outlier_left_count))];
+    let mut lines = vec![(
+        "outliers",
+        format!("{} replaced, {} left", count(quality.outlier_count), quality.outlier_left_count),
+    )];
     let axis = if quality.line_axis == FastAxis::Columns { "columns" } else { "rows" };
     if let Some(offset) = quality.line_offset_m {
         lines.push(("scan lines", format!("offsets of {axis} removed: {offset:.3e} m rms")));
@@ -60,7 +63,12 @@ pub(super) fn warnings(header: &SurfaceHeader) -> Vec<String> {
         let (limit, kind) = (Limit::of(code)?, CAUTIONS.iter().find(|kind| kind.code == code)?);
         let (_, value) = columns.iter().find(|(name, _)| *name == limit.of_one())?;
         let value = value.filter(|value| limit.is_passed(Some(*value)))?;
-        Some(format!("{code}: {}. {} {}", measured_text(kind, limit, &[value]), kind.consequence, kind.action))
+        Some(format!(
+            "{code}: {}. {} {}",
+            measured_text(kind, limit, &[value]),
+            kind.consequence,
+            kind.action
+        ))
     };
     ARTEFACTS.into_iter().filter_map(warning).collect()
 }

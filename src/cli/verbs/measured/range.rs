@@ -5,7 +5,8 @@ use crate::spec::CaseParams;
 use crate::stages::Examined;
 use crate::stats::{Limit, significant};
 
-/// Range of the asperity model on a surface: the elastic energies that flatten its roughness are proportional to E*.
+/// Range of the asperity model on a surface: the elastic energies that flatten its roughness are proportional
+/// to E*.
 pub(super) struct Range<'a> {
     /// `U_el/E*` \[m\], of all roughness.
     pub(super) whole_m: f64,
@@ -35,7 +36,8 @@ fn limits() -> [f64; 2] {
 impl<'a> Range<'a> {
     /// Of a surface with its asperities and estimates.
     pub(super) fn of(examined: &'a Examined) -> Self {
-        let (unit, shortest_m) = (examined.estimates.flattening.energies(1.0), examined.estimates.shortest_wavelength_m);
+        let (unit, shortest_m) =
+            (examined.estimates.flattening.energies(1.0), examined.estimates.shortest_wavelength_m);
         Self { whole_m: unit.whole_j_m2, octave_m: unit.octave_j_m2, shortest_m, examined }
     }
 
@@ -51,11 +53,13 @@ impl<'a> Range<'a> {
         of_octave.max(whole / self.whole_m)
     }
 
-    /// A round modulus inside the range for [`ADHESION_J_M2`] \[Pa\]; the largest of a spec if that is smaller.
+    /// A round modulus inside the range for [`ADHESION_J_M2`] \[Pa\]; the largest of a spec if that is
+    /// smaller.
     fn modulus_pa(&self) -> f64 {
         let least = MARGIN * self.least_1_m() * ADHESION_J_M2;
         let decade = 10_f64.powf(least.log10().floor());
-        let round = [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * decade).find(|modulus| *modulus >= least);
+        let round =
+            [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * decade).find(|modulus| *modulus >= least);
         round.unwrap_or(f64::INFINITY).clamp(1.0, 1e13)
     }
 
@@ -81,15 +85,23 @@ impl<'a> Range<'a> {
         let [whole, octave] = self.ratios(modulus, ADHESION_J_M2).map(|ratio| significant(ratio, 2));
         let [at_least, and] = limits();
         let ratios = format!("# U_el/Δγ = {whole} (limit ≥ {at_least}), U_1/Δγ = {octave} (limit ≥ {and})");
-        let mut text = format!("[material]      {ratios}\ncontact_modulus_pa = {modulus:e}\nwork_of_adhesion_j_m2 = {ADHESION_J_M2}\n");
+        let mut text = format!(
+            "[material]      {ratios}\ncontact_modulus_pa = {modulus:e}\nwork_of_adhesion_j_m2 = \
+             {ADHESION_J_M2}\n"
+        );
         let range_m = CaseParams::default().material.interaction_range_m;
-        let material = Material { contact_modulus_pa: modulus, work_of_adhesion_j_m2: ADHESION_J_M2, interaction_range_m: range_m };
+        let material = Material {
+            contact_modulus_pa: modulus,
+            work_of_adhesion_j_m2: ADHESION_J_M2,
+            interaction_range_m: range_m,
+        };
         let least = limit("tabor");
-        let jump_in = self
-            .examined
-            .least_tabor(&material)
-            .filter(|tabor| *tabor < least)
-            .map(|tabor| format!("jump_in = \"jkr\"      # Tabor parameter μ ≥ {}; \"wu\" requires {least}\n", significant(tabor, 2)));
+        let jump_in = self.examined.least_tabor(&material).filter(|tabor| *tabor < least).map(|tabor| {
+            format!(
+                "jump_in = \"jkr\"      # Tabor parameter μ ≥ {}; \"wu\" requires {least}\n",
+                significant(tabor, 2)
+            )
+        });
         let boundary = (!periodic).then(|| "boundary = \"isolated\"\n".to_owned());
         let model: Vec<String> = [boundary, jump_in].into_iter().flatten().collect();
         if !model.is_empty() {

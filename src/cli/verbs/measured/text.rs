@@ -82,8 +82,14 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
 /// The statistics of a surface as text of at most 80 columns.
 pub(super) fn text(of: &Statistics<'_>) -> String {
     let mut text = format!("{}\n", of.file.display());
-    let lines =
-        [source(of), quality::lines(of.header), preprocessing(of.header), roughness(of), texture(of.header), self_affinity(of.header)];
+    let lines = [
+        source(of),
+        quality::lines(of.header),
+        preprocessing(of.header),
+        roughness(of),
+        texture(of.header),
+        self_affinity(of.header),
+    ];
     for (label, value) in lines.concat() {
         text += &wrapped(&format!("  {label:<14}{value}"), "                ");
     }
@@ -99,14 +105,19 @@ fn source(of: &Statistics<'_>) -> Vec<Line> {
     let mut lines = Vec::new();
     if let Some(measured) = &of.header.measured {
         let ([rows, columns], [a, b]) = (measured.source_point_counts, measured.source_spacings_m);
-        lines.push(("file", format!("{rows} x {columns} points along x and y, {a:.4e} m by {b:.4e} m apart")));
+        lines
+            .push(("file", format!("{rows} x {columns} points along x and y, {a:.4e} m by {b:.4e} m apart")));
         lines.extend(of.notes.iter().map(|note| ("", note.clone())));
         if (a / b - 1.0).abs() > 1e-3 {
             lines.push(("", format!("interpolated to points {:.4e} m apart both ways", a.min(b))));
         }
     }
-    let factor = of.height_factor_m.map(|factor| format!("{} m per number of the file", significant(factor, 6)));
-    lines.push(("height factor", factor.unwrap_or_else(|| "1 (surface of this program, in metres)".to_owned())));
+    let factor =
+        of.height_factor_m.map(|factor| format!("{} m per number of the file", significant(factor, 6)));
+    lines.push((
+        "height factor",
+        factor.unwrap_or_else(|| "1 (surface of this program, in metres)".to_owned()),
+    ));
     let continued = if of.header.periodic { "periodic" } else { "not periodic" };
     let points = of.counts[0];
     lines.push(("square", format!("{points} x {points} points, {:.4e} m, {continued}", of.header.length_m)));
@@ -118,12 +129,23 @@ fn preprocessing(header: &SurfaceHeader) -> Vec<Line> {
     let lines = |of: &Measured| {
         let missing = counted(usize::try_from(of.missing_count).unwrap_or(usize::MAX), "point");
         let filled = if of.missing_count > 0 { ", interpolated (harmonic in-fill)" } else { "" };
-        let form =
-            if of.detrend == Detrend::Mean { "the mean".to_owned() } else { format!("a {}: {:.3e} m rms", shape(of.detrend), of.trend_m) };
+        let form = if of.detrend == Detrend::Mean {
+            "the mean".to_owned()
+        } else {
+            format!("a {}: {:.3e} m rms", shape(of.detrend), of.trend_m)
+        };
         vec![
             ("missing", format!("{missing}{filled}")),
             ("removed", form),
-            ("", format!("wavelengths below {:.3e} m ({}): {:.3e} m rms", of.shortest_wavelength_m, kind(of.filter), of.noise_m)),
+            (
+                "",
+                format!(
+                    "wavelengths below {:.3e} m ({}): {:.3e} m rms",
+                    of.shortest_wavelength_m,
+                    kind(of.filter),
+                    of.noise_m
+                ),
+            ),
         ]
     };
     header.measured.as_ref().map(lines).unwrap_or_default()
@@ -131,13 +153,25 @@ fn preprocessing(header: &SurfaceHeader) -> Vec<Line> {
 
 /// Rms values and asperities.
 fn roughness(of: &Statistics<'_>) -> Vec<Line> {
-    let SurfaceHeader { length_m, rms_height_m, rms_slope, rms_curvature_1_m, nayak_parameter, .. } = *of.header;
+    let SurfaceHeader { length_m, rms_height_m, rms_slope, rms_curvature_1_m, nayak_parameter, .. } =
+        *of.header;
     let [_, summits, edge] = of.counts;
     let nayak = of.header.moments().summit_density_1_m2() * length_m * length_m;
     let mut lines = vec![
-        ("heights", format!("{rms_height_m:.4e} m rms, slope {rms_slope:.4} rms, Laplacian {rms_curvature_1_m:.3e} 1/m rms")),
+        (
+            "heights",
+            format!(
+                "{rms_height_m:.4e} m rms, slope {rms_slope:.4} rms, Laplacian {rms_curvature_1_m:.3e} 1/m \
+                 rms"
+            ),
+        ),
         ("", format!("mean curvature {:.3e} 1/m rms: half the Laplacian", 0.5 * rms_curvature_1_m)),
-        ("summits", format!("{summits}, and {nayak:.0} predicted by Nayak (bandwidth parameter {nayak_parameter:.2})")),
+        (
+            "summits",
+            format!(
+                "{summits}, and {nayak:.0} predicted by Nayak (bandwidth parameter {nayak_parameter:.2})"
+            ),
+        ),
     ];
     if edge > 0 {
         lines.push(("", format!("{edge} more near the edge are excluded")));
@@ -151,7 +185,10 @@ fn texture(header: &SurfaceHeader) -> Vec<Line> {
     let (aspect, ratio) = (significant(of.aspect(), 3), significant(of.slope_ratio, 3));
     let (str, direction) = (significant(of.aspect_ratio_str, 2), of.direction_rad.to_degrees());
     let ridges = format!("rms slope smallest at {direction:.0}° from x to y");
-    vec![("texture", format!("aspect ratio {aspect}: rms slopes {ratio}, Str {str} (ISO 25178)")), ("", ridges)]
+    vec![
+        ("texture", format!("aspect ratio {aspect}: rms slopes {ratio}, Str {str} (ISO 25178)")),
+        ("", ridges),
+    ]
 }
 
 /// Warning of a texture beyond the limit.
@@ -168,13 +205,20 @@ fn texture_caution(of: &Measured) -> Option<String> {
 }
 
 /// Normalization of the spectral density, with the factor to that of other programs.
-const CONVENTION: &str = "integral of C(q) over d2q = h_rms^2; SurfaceTopography and contact.engineering: 4 pi^2 = 39.48 times C";
+const CONVENTION: &str =
+    "integral of C(q) over d2q = h_rms^2; SurfaceTopography and contact.engineering: 4 pi^2 = 39.48 times C";
 
 /// Fit of a self-affine spectrum, and the band of wavelengths that holds data.
 fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
-    let Some(fit) = header.measured.as_ref().and_then(|of| of.fit) else { return vec![("self-affine", "no fit".to_owned())] };
-    let rolls = fit.roll_off_m(header.length_m).map_or_else(|| "none within the scan".to_owned(), |at| format!("at {at:.3e} m"));
-    let long = fit.long_cut_m.map_or_else(|| "none within the scan".to_owned(), |at| format!("no data above {at:.3e} m"));
+    let Some(fit) = header.measured.as_ref().and_then(|of| of.fit) else {
+        return vec![("self-affine", "no fit".to_owned())];
+    };
+    let rolls = fit
+        .roll_off_m(header.length_m)
+        .map_or_else(|| "none within the scan".to_owned(), |at| format!("at {at:.3e} m"));
+    let long = fit
+        .long_cut_m
+        .map_or_else(|| "none within the scan".to_owned(), |at| format!("no data above {at:.3e} m"));
     let short = fit.short_cut.map_or_else(
         || "none".to_owned(),
         |(at, cause)| match cause {
@@ -184,7 +228,13 @@ fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
         },
     );
     vec![
-        ("self-affine", format!("H = {:.3}, C0 = {:.3e} m⁴, scatter {:.2} decades", fit.hurst, fit.plateau_m4, fit.scatter)),
+        (
+            "self-affine",
+            format!(
+                "H = {:.3}, C0 = {:.3e} m⁴, scatter {:.2} decades",
+                fit.hurst, fit.plateau_m4, fit.scatter
+            ),
+        ),
         ("", "∫C(q)d²q = h_rms²; SurfaceTopography: 4π² = 39.48 times C".to_owned()),
         ("roll-off", rolls),
         ("long cut", long),
@@ -200,7 +250,8 @@ fn spec(path: &Path, of: &Statistics<'_>) -> String {
     let file = quoted(&path.to_string_lossy());
     format!(
         "Written: {}. Spec for this surface; replace the material constants:\n\n\
-         name = \"of_{stem}\"\n[surface]\nfile = {file}\n{periodic}{}[cycle]\nmax_load = [0.004]       # F/(E* A0)\n",
+         name = \"of_{stem}\"\n[surface]\nfile = {file}\n{periodic}{}[cycle]\nmax_load = [0.004]       # \
+              F/(E* A0)\n",
         path.display(),
         of.range.spec(of.header.periodic)
     )
@@ -217,7 +268,8 @@ pub(super) const STEEP: f64 = 1.0;
 pub(super) const FLAT: f64 = 1e-5;
 pub(super) const LOW_M: f64 = 1e-10;
 
-/// Warnings: what the central square leaves out, units or values that are unlikely, and a spectrum that is not self-affine.
+/// Warnings: what the central square leaves out, units or values that are unlikely, and a spectrum that is
+/// not self-affine.
 fn cautions(header: &SurfaceHeader) -> Vec<String> {
     let mut cautions = Vec::new();
     if let Some(of) = &header.measured {
@@ -236,11 +288,16 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
         cautions.extend(overshoot(of, header.rms_height_m));
         match of.fit {
             Some(fit) if !SELF_AFFINE.contains(&fit.hurst) => cautions.push(format!(
-                "fit: H = {:.2} is outside 0 to 1, so the spectrum is not self-affine in the band of wavelengths that holds data; do not use H",
+                "fit: H = {:.2} is outside 0 to 1, so the spectrum is not self-affine in the band of \
+                 wavelengths that holds data; do not use H",
                 fit.hurst
             )),
             Some(_) => {}
-            None => cautions.push("fit: too few wavelengths with data for a self-affine fit; use a larger scan".to_owned()),
+            None => cautions.push(
+                "fit: too few wavelengths with data for a self-affine fit; use a larger \
+                 scan"
+                    .to_owned(),
+            ),
         }
     }
     cautions.extend(quality::warnings(header));
@@ -251,7 +308,10 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
         ));
     }
     if header.rms_slope < FLAT {
-        cautions.push(format!("an rms slope of {:.1e} is flatter than any measured surface; check the units", header.rms_slope));
+        cautions.push(format!(
+            "an rms slope of {:.1e} is flatter than any measured surface; check the units",
+            header.rms_slope
+        ));
     }
     if header.rms_height_m < LOW_M {
         cautions.push(format!("{:.1e} m rms is less than an atom; check the units", header.rms_height_m));
@@ -261,7 +321,8 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
 
 /// Warning of a filter that rings at steps.
 fn overshoot(of: &Measured, rms_height_m: f64) -> Option<String> {
-    let limit = Limit::of("overshoot").filter(|limit| limit.is_passed(Some(of.overshoot_m / rms_height_m)))?;
+    let limit =
+        Limit::of("overshoot").filter(|limit| limit.is_passed(Some(of.overshoot_m / rms_height_m)))?;
     Some(format!(
         "overshoot: filtered heights exceed the measured heights nearby by {:.2e} m beyond the noise (limit {:.0} % of h_rms, {:.2e} m); \
          the sharp low-pass filter rings at steps, and its asperities there do not exist. Apply --filter gaussian",

@@ -11,7 +11,8 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "distance of absorption",
         &[ABSORPTION_DISTANCE],
         "of the radius",
-        "A contact absorbs an asperity at this distance from its edge, where the slope of its field is still finite.",
+        "A contact absorbs an asperity at this distance from its edge, where the slope of its field is still \
+         finite.",
         "transition",
     ),
     Constant::new(

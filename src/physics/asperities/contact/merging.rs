@@ -1,22 +1,23 @@
 //! Equal-area merging of overlapping contacts and their splitting, for coalescence `merge`.
 //!
 //! Two contacts with `r < a_i + a_j` merge into one of the same area and load, at their area-weighted centre:
-//! `a² = a_i² + a_j²`, `F = F_i + F_j`.
-//! The radius of its sphere is `R = (4/3)E*a³/(F + sqrt(8πE*Δγa³))` (Eq 1), and its height makes it an equilibrium (Eqs 2 and 5).
-//! From then on it is an asperity, which may merge again. It splits when its area has returned to the value at merging.
+//! `a² = a_i² + a_j²`, `F = F_i + F_j`. The radius of its sphere is `R = (4/3)E*a³/(F + sqrt(8πE*Δγa³))` (Eq
+//! 1), and its height makes it an equilibrium (Eqs 2 and 5). From then on it is an asperity, which may merge
+//! again. It splits when its area has returned to the value at merging.
 //!
-//! Contacts merge in equilibrium, one pair at a time and the largest overlap first.
-//! An asperity is absorbed as with `cover` if a larger contact reaches its centre before they have merged.
-//! This happens if the asperity is free, or during the solution for an equilibrium.
-//! A pair whose tensile load would put the merged contact beyond the end of its branch merges only when this is no longer so.
-//! A pair that has split must have been apart before it merges again. In other surroundings the parts are no longer in equilibrium when it splits; they relax,
-//! and the energy of that is dissipated.
+//! Contacts merge in equilibrium, one pair at a time and the largest overlap first. An asperity is absorbed
+//! as with `cover` if a larger contact reaches its centre before they have merged. This happens if the
+//! asperity is free, or during the solution for an equilibrium. A pair whose tensile load would put the
+//! merged contact beyond the end of its branch merges only when this is no longer so. A pair that has split
+//! must have been apart before it merges again. In other surroundings the parts are no longer in equilibrium
+//! when it splits; they relax, and the energy of that is dissipated.
 //!
-//! A merged contact is a different sphere from its two parts, with another field and another potential. Both differences at merging are constants of the
-//! merged contact:
-//! - The difference of the fields stays at all other asperities, as a change of their heights, until it splits. Then nothing moves when contacts merge, and
-//!   nothing when they split in the same surroundings.
-//! - The difference of the potentials is part of its potential. So merging dissipates nothing, nor does splitting in the same surroundings.
+//! A merged contact is a different sphere from its two parts, with another field and another potential. Both
+//! differences at merging are constants of the merged contact:
+//! - The difference of the fields stays at all other asperities, as a change of their heights, until it
+//!   splits. Then nothing moves when contacts merge, and nothing when they split in the same surroundings.
+//! - The difference of the potentials is part of its potential. So merging dissipates nothing, nor does
+//!   splitting in the same surroundings.
 
 use super::merged_spot::TouchingPairs;
 use super::problem::Problem;
@@ -59,7 +60,8 @@ impl Problem {
         (self.summits()..state.status.len()).filter(|i| state.status[*i] != Status::Free)
     }
 
-    /// Displacement \[m\] by two contacts beyond that of the contact that they merge into, at the radii at merging.
+    /// Displacement \[m\] by two contacts beyond that of the contact that they merge into, at the radii at
+    /// merging.
     ///
     /// By number, at all asperities and merged contacts that exist; 0 at the contact itself.
     pub(crate) fn difference_field(&self, number: usize, merged: &Merged, state: &State) -> Vec<f64> {
@@ -70,7 +72,8 @@ impl Problem {
     /// Sum of the difference fields of merged contacts at the place of another \[m\].
     pub(crate) fn differences_at(&self, state: &State, number: usize) -> f64 {
         let sources = self.live_merged(state).filter(|k| *k != number);
-        let sources: Vec<_> = sources.flat_map(|k| self.difference(k, &state.merged[k - self.summits()])).collect();
+        let sources: Vec<_> =
+            sources.flat_map(|k| self.difference(k, &state.merged[k - self.summits()])).collect();
         self.field.at_one(&sources, number)
     }
 
@@ -88,10 +91,12 @@ impl Problem {
         }
     }
 
-    /// Potential of two contacts beyond that of the contact in their place \[J\], of which the constant does not count.
+    /// Potential of two contacts beyond that of the contact in their place \[J\], of which the constant does
+    /// not count.
     ///
-    /// It consists of their own potentials and those of interaction, with each other and with `others`, whose radii are \[m\]. `difference` is the
-    /// difference of their fields by number. `displaced` are the displacements at the two contacts and at the one \[m\].
+    /// It consists of their own potentials and those of interaction, with each other and with
+    /// `others`, whose radii are \[m\]. `difference` is the difference of their fields by number. `displaced`
+    /// are the displacements at the two contacts and at the one \[m\].
     pub(crate) fn exchange_j(
         &self,
         number: usize,
@@ -102,9 +107,12 @@ impl Problem {
     ) -> f64 {
         let ([i, j], [a, b], radius) = (merged.parts, merged.radii_m, merged.contact_radius_m());
         let load = |i: usize, a: f64| self.asperities[i].load(a);
-        let own = |i: usize, a: f64, displacement: f64| self.self_potential(i, a) + 0.5 * load(i, a) * displacement;
+        let own =
+            |i: usize, a: f64, displacement: f64| self.self_potential(i, a) + 0.5 * load(i, a) * displacement;
         let fields: f64 = others.iter().map(|(k, a)| difference[*k] * load(*k, *a)).sum();
-        own(i, a, displaced[0]) + own(j, b, displaced[1]) - own(number, radius, displaced[2]) + self.potential_offset[number] + 0.5 * fields
+        own(i, a, displaced[0]) + own(j, b, displaced[1]) - own(number, radius, displaced[2])
+            + self.potential_offset[number]
+            + 0.5 * fields
     }
 
     /// Adds a merged contact; it gets the next number.
@@ -123,17 +131,22 @@ impl Problem {
     /// Load of the contact that two contacts would merge into, and its adhesive part `sqrt(8πE*Δγa³)` \[N\].
     fn joint_load(&self, [i, j]: [usize; 2], [a, b]: [f64; 2]) -> (f64, f64) {
         let area_radius = a.hypot(b);
-        let root = 2.0 * self.material.contact_modulus_pa * self.material.pull() * area_radius * area_radius.sqrt();
+        let root =
+            2.0 * self.material.contact_modulus_pa * self.material.pull() * area_radius * area_radius.sqrt();
         (self.asperities[i].load(a) + self.asperities[j].load(b), root)
     }
 
     /// Converts a merged contact to the caller's numbers and positions.
     pub(crate) fn outward(&self, spot: &Merged) -> Merged {
-        Merged { parts: spot.parts.map(|part| self.number(part)), place_m: self.places.outward(spot.place_m), ..*spot }
+        Merged {
+            parts: spot.parts.map(|part| self.number(part)),
+            place_m: self.places.outward(spot.place_m),
+            ..*spot
+        }
     }
 
-    /// Overlap of two contacts of these radii \[m\] over their distance, or the distance of their joint load from the limit if that is
-    /// less: negative as long as they do not merge.
+    /// Overlap of two contacts of these radii \[m\] over their distance, or the distance of their joint load
+    /// from the limit if that is less: negative as long as they do not merge.
     pub(crate) fn meeting(&self, pair: [usize; 2], radii: [f64; 2]) -> f64 {
         let overlap = (radii[0] + radii[1]) / self.distance(pair[0], pair[1]) - 1.0;
         let (load, root) = self.joint_load(pair, radii);
@@ -149,7 +162,10 @@ impl Problem {
         let largest = state.largest_radius();
         for &i in &state.contacts {
             self.neighbours.within(i, state.radius[i] + largest, |_, j| {
-                if j > i && state.radius[j] > 0.0 && self.meeting([i, j], [state.radius[i], state.radius[j]]) >= 0.0 {
+                if j > i
+                    && state.radius[j] > 0.0
+                    && self.meeting([i, j], [state.radius[i], state.radius[j]]) >= 0.0
+                {
                     pairs.insert((i, j));
                 }
             });

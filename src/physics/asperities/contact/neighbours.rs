@@ -60,7 +60,8 @@ impl Neighbours {
         for k in 0..cells * cells {
             starts[k + 1] += starts[k];
         }
-        found.surface = Arc::new(Table { members: members.clone(), starts: starts.clone(), near: Vec::new() });
+        found.surface =
+            Arc::new(Table { members: members.clone(), starts: starts.clone(), near: Vec::new() });
         // Most searches at each step are within this radius.
         let near = (0..found.positions.len()).map(|i| found.others(i, found.side)).collect();
         found.surface = Arc::new(Table { members, starts, near });
@@ -109,7 +110,8 @@ impl Neighbours {
 
     /// Rows or columns of cells that a circle may intersect.
     fn lines(&self, coordinate: f64, radius: f64) -> Vec<usize> {
-        let (low, high) = (((coordinate - radius) / self.side).floor(), ((coordinate + radius) / self.side).floor());
+        let (low, high) =
+            (((coordinate - radius) / self.side).floor(), ((coordinate + radius) / self.side).floor());
         let cells = self.cells as f64;
         if high - low + 1.0 >= cells {
             return (0..self.cells).collect();
@@ -122,12 +124,21 @@ impl Neighbours {
         }
     }
 
-    /// Calls `visit(distance, asperity)` for every asperity within `radius` of `place` that is `wanted`, in no order.
-    pub(crate) fn around(&self, place: &[f64; 2], radius: f64, wanted: impl Fn(usize) -> bool, mut visit: impl FnMut(f64, usize)) {
+    /// Calls `visit(distance, asperity)` for every asperity within `radius` of `place` that is `wanted`, in
+    /// no order.
+    pub(crate) fn around(
+        &self,
+        place: &[f64; 2],
+        radius: f64,
+        wanted: impl Fn(usize) -> bool,
+        mut visit: impl FnMut(f64, usize),
+    ) {
         let Table { members, starts, .. } = &*self.surface;
         self.visit_cells(place, radius, |cell| {
             let added = self.added.get(cell).into_iter().flatten();
-            for &i in members[starts[cell]..starts[cell + 1]].iter().chain(added).filter(|i| wanted(**i as usize)) {
+            for &i in
+                members[starts[cell]..starts[cell + 1]].iter().chain(added).filter(|i| wanted(**i as usize))
+            {
                 let r = self.distance(place, &self.positions[i as usize]);
                 if r <= radius {
                     visit(r, i as usize);
@@ -159,7 +170,8 @@ impl Neighbours {
         self.side
     }
 
-    /// Calls `visit(distance, asperity)` for every other asperity within `radius` of asperity `j`, in no order.
+    /// Calls `visit(distance, asperity)` for every other asperity within `radius` of asperity `j`, in no
+    /// order.
     pub(crate) fn within(&self, j: usize, radius: f64, mut visit: impl FnMut(f64, usize)) {
         let near = self.surface.near.get(j).filter(|_| radius <= self.side);
         let Some(near) = near else {
@@ -185,7 +197,13 @@ impl Neighbours {
     /// The `count` nearest `wanted` asperities to `place`, or fewer, unordered.
     ///
     /// `all` is the number of `wanted` asperities.
-    pub(crate) fn nearest(&self, place: &[f64; 2], count: usize, all: usize, wanted: impl Fn(usize) -> bool) -> Vec<(f64, usize)> {
+    pub(crate) fn nearest(
+        &self,
+        place: &[f64; 2],
+        count: usize,
+        all: usize,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Vec<(f64, usize)> {
         // Radius that contains 1.5 times as many if they are uniformly distributed.
         let mut radius = self.length * (1.5 * count as f64 / (PI * all.max(1) as f64)).sqrt();
         loop {
@@ -211,7 +229,9 @@ mod tests {
 
     /// Points of a fixed sequence in the unit square.
     fn places(count: usize) -> Vec<[f64; 2]> {
-        (1..=count).map(|i| [(i as f64 * 0.618_033_988_749_895).fract(), (i as f64 * 0.754_877_666_246_693).fract()]).collect()
+        (1..=count)
+            .map(|i| [(i as f64 * 0.618_033_988_749_895).fract(), (i as f64 * 0.754_877_666_246_693).fract()])
+            .collect()
     }
 
     #[test]
@@ -220,7 +240,8 @@ mod tests {
         for boundary in [Boundary::Periodic, Boundary::Isolated] {
             let neighbours = Neighbours::new(all.clone(), 1.0, boundary);
             for place in [[0.01, 0.99], [0.5, 0.5], [0.3, 0.02]] {
-                let mut expected: Vec<(f64, usize)> = all.iter().enumerate().map(|(i, p)| (neighbours.distance(p, &place), i)).collect();
+                let mut expected: Vec<(f64, usize)> =
+                    all.iter().enumerate().map(|(i, p)| (neighbours.distance(p, &place), i)).collect();
                 expected.sort_by(|u, v| u.0.total_cmp(&v.0));
                 let mut found = neighbours.nearest(&place, 12, all.len(), |_| true);
                 found.sort_unstable_by(nearer);

@@ -27,7 +27,11 @@ impl Places {
     pub(crate) fn new(summits: &[Summit], length: f64, boundary: Boundary) -> Result<Self, PhysicsError> {
         let mut numbers: Vec<usize> = (0..summits.len()).collect();
         let height = |i: &usize| summits[*i].height_m;
-        let highest = numbers.iter().copied().max_by(|i, j| height(i).total_cmp(&height(j))).ok_or(PhysicsError::NoSummit)?;
+        let highest = numbers
+            .iter()
+            .copied()
+            .max_by(|i, j| height(i).total_cmp(&height(j)))
+            .ok_or(PhysicsError::NoSummit)?;
         let least = |of: fn(&Summit) -> f64| summits.iter().map(of).fold(f64::INFINITY, f64::min);
         let origin = match boundary {
             Boundary::Periodic => [summits[highest].x_m, summits[highest].y_m],
@@ -51,7 +55,8 @@ impl Places {
     pub(crate) fn inward(&self, place: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let share = (place[k] - self.origin[k]) / self.length;
-            let grains = ((if self.is_periodic() { share - share.floor() } else { share }) / POSITION_QUANTUM).round();
+            let grains =
+                ((if self.is_periodic() { share - share.floor() } else { share }) / POSITION_QUANTUM).round();
             let grains = if self.is_periodic() && grains * POSITION_QUANTUM >= 1.0 { 0.0 } else { grains };
             grains * POSITION_QUANTUM * self.length
         })

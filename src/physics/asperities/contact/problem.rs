@@ -52,7 +52,8 @@ pub struct Problem {
     pub(crate) asperities: Grown<Asperity>,
     /// Caller's numbers and positions.
     pub(crate) places: Arc<Places>,
-    /// Heights relative to the highest asperity \[m\]: zero or negative; lowered by the difference fields of merged contacts.
+    /// Heights relative to the highest asperity \[m\]: zero or negative; lowered by the difference fields of
+    /// merged contacts.
     pub(crate) heights: Vec<f64>,
     /// Jump-in penetrations \[m\]: zero or negative, never below the end of the branch.
     ///
@@ -73,8 +74,8 @@ pub struct Problem {
 
 /// Lower limit of Wu's jump-in penetration, as a fraction of the jump-off penetration.
 ///
-/// Wu's criterion (Eq 3) is beyond the end of the JKR branch at Tabor parameters from 0.2 to 1.
-/// An asperity that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
+/// Wu's criterion (Eq 3) is beyond the end of the JKR branch at Tabor parameters from 0.2 to 1. An asperity
+/// that formed a contact there would leave at once. At its lower bound, μ = 2, the criterion gives 0.79.
 pub(super) const MAX_WU_JUMP_IN: f64 = 0.95;
 
 impl Problem {
@@ -96,14 +97,20 @@ impl Problem {
 
     /// Contact problem of the given summits.
     ///
-    /// Asperities are numbered internally from the highest down. Positions are relative to the highest one and rounded to 2⁻⁴⁰ of the side.
-    /// The results therefore do not depend on the caller's order or on the origin of the square.
-    /// [`Self::number`] returns the caller's number.
+    /// Asperities are numbered internally from the highest down. Positions are relative to the highest one
+    /// and rounded to 2⁻⁴⁰ of the side. The results therefore do not depend on the caller's order or on the
+    /// origin of the square. [`Self::number`] returns the caller's number.
     ///
     /// # Errors
     /// There must be a summit. Radii and material must be positive.
     /// With Wu's rule all Tabor parameters must be at least 2 unless allowed.
-    pub fn new(summits: &[Summit], length_m: f64, rms_height_m: f64, material: Material, rules: Rules) -> Result<Self, PhysicsError> {
+    pub fn new(
+        summits: &[Summit],
+        length_m: f64,
+        rms_height_m: f64,
+        material: Material,
+        rules: Rules,
+    ) -> Result<Self, PhysicsError> {
         let places = Places::new(summits, length_m, rules.boundary)?;
         let highest = summits[places.numbers[0]].height_m;
         let summits: Vec<Summit> = places.numbers.iter().map(|i| summits[*i]).collect();
@@ -120,14 +127,18 @@ impl Problem {
         let jump_in: Vec<f64> = asperities
             .iter()
             .map(|a| match rules.jump_in {
-                // Without adhesion there is no jump: contact begins above the penetration at which it ends, beyond rounding.
+                // Without adhesion there is no jump: contact begins above the penetration at which it ends,
+                // beyond rounding.
                 _ if !adhesive => 4.0 * a.jump_off_penetration(),
                 JumpIn::Jkr => 0.0,
-                JumpIn::Wu => a.wu_jump_in_penetration(range).min(0.0).max(MAX_WU_JUMP_IN * a.jump_off_penetration()),
+                JumpIn::Wu => {
+                    a.wu_jump_in_penetration(range).min(0.0).max(MAX_WU_JUMP_IN * a.jump_off_penetration())
+                }
             })
             .collect();
         let positions: Vec<[f64; 2]> = summits.iter().map(|s| places.inward([s.x_m, s.y_m])).collect();
-        let field = choose(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
+        let field =
+            choose(positions.clone(), length_m, &material, rules.interaction, rules.boundary, rules.slips);
         Ok(Self {
             heights: summits.iter().map(|s| s.height_m - highest).collect(),
             potential_offset: vec![0.0; jump_in.len()].into(),
@@ -155,8 +166,8 @@ impl Problem {
         self.numerics.events.local_contacts >= self.summits()
     }
 
-    /// Residual below which a state is an equilibrium \[m\]: `1e-8 h_rms`, the error of fast sums, or `1e-10 h_rms` with fewer than 300 asperities or
-    /// without interaction, where sums are direct.
+    /// Residual below which a state is an equilibrium \[m\]: `1e-8 h_rms`, the error of fast sums, or
+    /// `1e-10 h_rms` with fewer than 300 asperities or without interaction, where sums are direct.
     #[must_use]
     pub fn tolerance_m(&self) -> f64 {
         self.field.precision() * self.rms_height_m
@@ -226,10 +237,18 @@ impl Problem {
     pub(crate) fn spot(&self, i: usize, a: f64) -> Spot {
         let asperity = &self.asperities[i];
         let [x, y] = *self.place(i);
-        Spot { x, y, a, radius: asperity.radius_m(), load: asperity.load(a), load_slope: asperity.load_slope(a) }
+        Spot {
+            x,
+            y,
+            a,
+            radius: asperity.radius_m(),
+            load: asperity.load(a),
+            load_slope: asperity.load_slope(a),
+        }
     }
 
-    /// Potential of a contact of radius `a` \[m\] on its branch, without its interaction \[J\]: `U(δ(a), a) − Δγπa²`.
+    /// Potential of a contact of radius `a` \[m\] on its branch, without its interaction \[J\]: `U(δ(a), a) −
+    /// Δγπa²`.
     pub(crate) fn self_potential(&self, i: usize, a: f64) -> f64 {
         let asperity = &self.asperities[i];
         let adhesion = self.material.work_of_adhesion_j_m2 * PI * a * a;

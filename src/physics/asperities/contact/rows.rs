@@ -49,13 +49,23 @@ impl State {
     /// `merged` are the merged spots of the state.
     ///
     /// # Errors
-    /// Asperity numbers, including absorbing ones, must belong to the problem. A contact radius must be positive.
-    pub fn restored(problem: &Problem, mean_penetration_m: f64, merged: &[Merged], rows: &[Kept]) -> Result<Self, PhysicsError> {
+    /// Asperity numbers, including absorbing ones, must belong to the problem. A contact radius must be
+    /// positive.
+    pub fn restored(
+        problem: &Problem,
+        mean_penetration_m: f64,
+        merged: &[Merged],
+        rows: &[Kept],
+    ) -> Result<Self, PhysicsError> {
         let mut state = Self::free(problem, mean_penetration_m);
         let inside = problem.places.inside();
         let number = |i: usize| inside.get(i).copied().unwrap_or(i);
         for spot in merged {
-            state.extend(Merged { parts: spot.parts.map(number), place_m: problem.places.inward(spot.place_m), ..*spot });
+            state.extend(Merged {
+                parts: spot.parts.map(number),
+                place_m: problem.places.inward(spot.place_m),
+                ..*spot
+            });
         }
         let count = state.status.len();
         for row in rows {

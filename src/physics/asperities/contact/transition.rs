@@ -1,13 +1,14 @@
 //! Transitions of asperities: their kinds, the resulting status, and transitions during a relaxation.
 //!
-//! An asperity jumps into contact when its penetration reaches its jump-in penetration, and out of contact at the end of its branch.
-//! It is absorbed when a larger spot reaches its centre, to [`ABSORPTION_DISTANCE`], and released when that spot has withdrawn from it.
+//! An asperity jumps into contact when its penetration reaches its jump-in penetration, and out of contact at
+//! the end of its branch. It is absorbed when a larger spot reaches its centre, to [`ABSORPTION_DISTANCE`],
+//! and released when that spot has withdrawn from it.
 //!
-//! Absorption removes a load and so moves the absorbing spot. If the load was tensile, the spot shrinks and would release
-//! the asperity at once, which would enlarge the spot again, in an endless cycle.
-//! Therefore the release radius is lowered to the radius of the spot after absorption, if that is smaller.
-//! A release that would only lead to absorption again, or to an exchange of roles, is not applied.
-//! It is tried again after the spot has shrunk by another 3 %. Neither rule depends on the step of mean penetration.
+//! Absorption removes a load and so moves the absorbing spot. If the load was tensile, the spot shrinks and
+//! would release the asperity at once, which would enlarge the spot again, in an endless cycle. Therefore the
+//! release radius is lowered to the radius of the spot after absorption, if that is smaller. A release that
+//! would only lead to absorption again, or to an exchange of roles, is not applied. It is tried again after
+//! the spot has shrunk by another 3 %. Neither rule depends on the step of mean penetration.
 
 use super::problem::Problem;
 use super::state::{State, Status};
@@ -16,7 +17,8 @@ use crate::model::Coalescence;
 
 /// Distance from the edge of a contact, over its radius, at which it absorbs an asperity.
 ///
-/// The slope of its field is infinite at its edge. Nearer to it, Newton's method mostly does not find the equilibrium of all contacts.
+/// The slope of its field is infinite at its edge. Nearer to it, Newton's method mostly does not find the
+/// equilibrium of all contacts.
 pub(super) const ABSORPTION_DISTANCE: f64 = 1e-4;
 
 /// Radius \[m\] at which a contact absorbs an asperity at a distance \[m\].
@@ -110,10 +112,13 @@ impl Transition {
         let i = self.asperity;
         moved.iter().any(|earlier| match (self.kind, earlier.kind) {
             (EventKind::JumpIn, EventKind::JumpOff | EventKind::Uncover) => earlier.asperity == i,
-            (EventKind::Cover, EventKind::Uncover) | (EventKind::Split, EventKind::Merge) => earlier.asperity == i,
+            (EventKind::Cover, EventKind::Uncover) | (EventKind::Split, EventKind::Merge) => {
+                earlier.asperity == i
+            }
             // A release is allowed if the absorbing spot itself has left contact.
             (EventKind::Uncover, EventKind::Cover) => {
-                earlier.asperity == i && matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] > 0.0)
+                earlier.asperity == i
+                    && matches!(state.status[i], Status::Covered { by, .. } if state.radius[by] > 0.0)
             }
             _ => false,
         })
@@ -124,7 +129,8 @@ impl Transition {
     /// It absorbs the released asperity, or the formerly absorbing spot into the released one.
     pub(crate) fn undoes(&self, uncovering: &Self) -> bool {
         let i = uncovering.asperity;
-        self.kind == EventKind::Cover && (self.asperity == i || (Some(self.asperity) == uncovering.by && self.by == Some(i)))
+        self.kind == EventKind::Cover
+            && (self.asperity == i || (Some(self.asperity) == uncovering.by && self.by == Some(i)))
     }
 
     /// Status of an asperity that this change removes from contact.
@@ -161,7 +167,8 @@ impl Problem {
         }
     }
 
-    /// Largest spot over the centre of asperity `i`, other than `but`, with the radius at which it absorbs it.
+    /// Largest spot over the centre of asperity `i`, other than `but`, with the radius at which it absorbs
+    /// it.
     pub(crate) fn covering(&self, state: &State, i: usize, but: Option<usize>) -> Option<(usize, f64)> {
         state
             .contacts
@@ -174,7 +181,8 @@ impl Problem {
 
     /// Transition due during a relaxation of `spots` (ascending), if any.
     ///
-    /// First the spot furthest below the end of its branch that is still shrinking, else the spot furthest inside a larger one.
+    /// First the spot furthest below the end of its branch that is still shrinking, else the spot furthest
+    /// inside a larger one.
     pub(crate) fn overtaken(&self, spots: &[ContactView]) -> Option<Transition> {
         let mut found: Option<(f64, Transition)> = None;
         for &(i, a, residual) in spots {

@@ -1,7 +1,8 @@
 //! Exact area of the union of the contact discs.
 //!
-//! By Green's theorem the area is `∮ x dy` along the arcs that lie in no other disc. On the periodic square `x` is in `[0, L)`.
-//! An arc is cut where it crosses `x = 0`, and the length of that line inside the union is counted with the factor L.
+//! By Green's theorem the area is `∮ x dy` along the arcs that lie in no other disc. On the periodic square
+//! `x` is in `[0, L)`. An arc is cut where it crosses `x = 0`, and the length of that line inside the union
+//! is counted with the factor L.
 
 use super::problem::Problem;
 use super::state::State;
@@ -12,7 +13,8 @@ use std::f64::consts::{PI, TAU};
 /// Area of the union of the discs of a state \[m²\].
 #[must_use]
 pub fn area(problem: &Problem, state: &State) -> f64 {
-    let discs: Vec<Disc> = state.contacts.iter().map(|&i| Disc { centre: *problem.place(i), radius: state.radius[i] }).collect();
+    let discs: Vec<Disc> =
+        state.contacts.iter().map(|&i| Disc { centre: *problem.place(i), radius: state.radius[i] }).collect();
     let largest = discs.iter().map(|d| d.radius).fold(0.0, f64::max);
     let overlapping = |k: usize| {
         let mut list = Vec::new();
@@ -25,7 +27,8 @@ pub fn area(problem: &Problem, state: &State) -> f64 {
         });
         list
     };
-    // The sum of the disc areas is an upper bound, also for a disc that overlaps its own periodic image. Of tiny discs rounding may leave less than nothing.
+    // The sum of the disc areas is an upper bound, also for a disc that overlaps its own periodic image. Of
+    // tiny discs rounding may leave less than nothing.
     let sum: f64 = discs.iter().map(|disc| PI * disc.radius * disc.radius).sum();
     union_area(&discs, problem.length_m, problem.rules.boundary, overlapping).min(sum).max(0.0)
 }
@@ -41,10 +44,15 @@ pub struct Disc {
 
 /// Area of the union of discs \[m²\], on the periodic square of side `length` or in the open plane.
 ///
-/// `overlapping(k)` returns the discs that overlap disc k.
-/// A disc must not overlap its own periodic image (radius below half the side); otherwise the result is the upper bound L².
+/// `overlapping(k)` returns the discs that overlap disc k. A disc must not overlap its own periodic image
+/// (radius below half the side); otherwise the result is the upper bound L².
 #[must_use]
-pub fn union_area(discs: &[Disc], length: f64, boundary: Boundary, overlapping: impl Fn(usize) -> Vec<usize>) -> f64 {
+pub fn union_area(
+    discs: &[Disc],
+    length: f64,
+    boundary: Boundary,
+    overlapping: impl Fn(usize) -> Vec<usize>,
+) -> f64 {
     let is_periodic = boundary == Boundary::Periodic;
     let mut area = 0.0;
     let mut line: Vec<(f64, f64)> = Vec::new();
@@ -72,8 +80,11 @@ pub fn union_area(discs: &[Disc], length: f64, boundary: Boundary, overlapping: 
             area += arc_moment(disc, from, to, length, boundary);
         }
     }
-    let crossed: f64 =
-        if is_periodic { length - complement(&mut line, length).iter().map(|(from, to)| to - from).sum::<f64>() } else { 0.0 };
+    let crossed: f64 = if is_periodic {
+        length - complement(&mut line, length).iter().map(|(from, to)| to - from).sum::<f64>()
+    } else {
+        0.0
+    };
     area + length * crossed
 }
 
@@ -96,7 +107,8 @@ fn hidden_arc(disc: &Disc, other: &Disc, length: f64, boundary: Boundary) -> Arc
     if distance >= disc.radius + other.radius || distance + other.radius <= disc.radius {
         return Arc::Nothing;
     }
-    let cosine = (distance * distance + disc.radius * disc.radius - other.radius * other.radius) / (2.0 * distance * disc.radius);
+    let cosine = (distance * distance + disc.radius * disc.radius - other.radius * other.radius)
+        / (2.0 * distance * disc.radius);
     let half = cosine.clamp(-1.0, 1.0).acos();
     let middle = dy.atan2(dx).rem_euclid(TAU);
     Arc::Part(middle - half, middle + half)
@@ -146,7 +158,8 @@ fn complement(list: &mut [(f64, f64)], period: f64) -> Vec<(f64, f64)> {
 fn arc_moment(disc: &Disc, from: f64, to: f64, length: f64, boundary: Boundary) -> f64 {
     let radius = disc.radius;
     let piece = |x: f64, a: f64, b: f64| {
-        x * radius * (b.sin() - a.sin()) + 0.5 * radius * radius * (b - a + 0.5 * ((2.0 * b).sin() - (2.0 * a).sin()))
+        x * radius * (b.sin() - a.sin())
+            + 0.5 * radius * radius * (b - a + 0.5 * ((2.0 * b).sin() - (2.0 * a).sin()))
     };
     let x = disc.centre[0];
     if boundary == Boundary::Isolated {

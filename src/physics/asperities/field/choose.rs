@@ -7,7 +7,8 @@ use super::{DirectSum, FastSum, Interaction, PairTable, PointLoad, Spots, Tangen
 use crate::cycle::Effort;
 use crate::model::{Boundary, Interaction as Kind, Material, Slips};
 
-/// Numbers of contact spots above which the fast sum is faster: with periodic images, with a table of their sums, and without images.
+/// Numbers of contact spots above which the fast sum is faster: with periodic images, with a table of their
+/// sums, and without images.
 ///
 /// Measured for the linearisations of one solution and the products that follow them.
 /// Without images a pair costs less and the mesh more.
@@ -31,9 +32,17 @@ pub(super) const DIRECT_TOLERANCE: f64 = 1e-10;
 ///
 /// The number of spots in contact selects the faster summation method.
 #[must_use]
-pub fn choose(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> FieldSum {
+pub fn choose(
+    positions: Vec<[f64; 2]>,
+    length_m: f64,
+    material: &Material,
+    kind: Kind,
+    boundary: Boundary,
+    slips: Slips,
+) -> FieldSum {
     let many = positions.len() >= MIN_ASPERITIES && matches!(kind, Kind::Spots | Kind::Point);
-    let to = |tolerance| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, tolerance);
+    let to =
+        |tolerance| FastSum::new(positions.clone(), length_m, material, kind, boundary, slips, tolerance);
     let fast = many.then(|| PerPrecision { full: to(TOLERANCE), rough: to(INTERMEDIATE_TOLERANCE) });
     let many = if boundary == Boundary::Periodic { FAST_FROM_PERIODIC } else { FAST_FROM_ISOLATED };
     let full = DirectSum::new(positions, length_m, material, kind, boundary, slips);
@@ -76,14 +85,16 @@ pub struct FieldSum {
 }
 
 impl FieldSum {
-    /// Precision to which equilibria can be solved: displacements in units of the largest one, or of the rms height, which is as large.
+    /// Precision to which equilibria can be solved: displacements in units of the largest one, or of the rms
+    /// height, which is as large.
     pub(crate) fn precision(&self) -> f64 {
         if self.fast.is_some() { TOLERANCE } else { DIRECT_TOLERANCE }
     }
 
     /// Sum for targets that are the spots themselves.
     ///
-    /// [`SumPrecision::Intermediate`] allows an error of 1e-6 if the fast sum is used; the direct sum is exact.
+    /// [`SumPrecision::Intermediate`] allows an error of 1e-6 if the fast sum is used; the direct sum is
+    /// exact.
     pub(crate) fn for_spots(&self, spots: &Spots, precision: SumPrecision) -> &dyn Interaction {
         match &self.fast {
             Some(fast) if spots.columns.len() >= self.many => fast.of(precision),
@@ -92,12 +103,28 @@ impl FieldSum {
     }
 
     /// Sum for other targets; with few targets the direct sum is cheaper than a mesh.
-    pub(crate) fn for_targets(&self, spots: &Spots, targets: &[usize], precision: SumPrecision) -> &dyn Interaction {
-        if targets.len() < self.many / 2 { self.direct.of(precision) } else { self.for_spots(spots, precision) }
+    pub(crate) fn for_targets(
+        &self,
+        spots: &Spots,
+        targets: &[usize],
+        precision: SumPrecision,
+    ) -> &dyn Interaction {
+        if targets.len() < self.many / 2 {
+            self.direct.of(precision)
+        } else {
+            self.for_spots(spots, precision)
+        }
     }
 
     /// Displacements and derivatives among the spots by direct sums, see [`DirectSum::among`].
-    pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
+    pub(crate) fn among(
+        &self,
+        spots: &Spots,
+        table: &mut PairTable,
+        fields: &mut Vec<f64>,
+        slopes: &mut Vec<f64>,
+        effort: &mut Effort,
+    ) {
         self.direct.full.among(spots, table, fields, slopes, effort);
     }
 
@@ -137,7 +164,8 @@ impl FieldSum {
         self.direct.full.at_one(spots, target)
     }
 
-    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`]. Intermediate sums have six digits of the image sums.
+    /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`]. Intermediate sums
+    /// have six digits of the image sums.
     pub(crate) fn rows(
         &self,
         spots: &Spots,
@@ -150,7 +178,13 @@ impl FieldSum {
     }
 
     /// Displacements far from a load, see [`DirectSum::far_from_load`].
-    pub(crate) fn far_from_load(&self, load: f64, place: &[f64; 2], reach: f64, targets: &[usize]) -> Vec<f64> {
+    pub(crate) fn far_from_load(
+        &self,
+        load: f64,
+        place: &[f64; 2],
+        reach: f64,
+        targets: &[usize],
+    ) -> Vec<f64> {
         self.direct.rough.far_from_load(load, place, reach, targets)
     }
 
@@ -161,11 +195,28 @@ impl FieldSum {
 }
 
 impl Interaction for FieldSum {
-    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
-        self.for_targets(spots, targets, SumPrecision::Full).displacements(spots, targets, displacements, effort);
+    fn displacements(
+        &self,
+        spots: &Spots,
+        targets: &[usize],
+        displacements: &mut Vec<f64>,
+        effort: &mut Effort,
+    ) {
+        self.for_targets(spots, targets, SumPrecision::Full).displacements(
+            spots,
+            targets,
+            displacements,
+            effort,
+        );
     }
 
-    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+    fn linearise(
+        &self,
+        spots: &Spots,
+        displacements: &mut Vec<f64>,
+        tangent: &mut Tangent,
+        effort: &mut Effort,
+    ) {
         self.for_spots(spots, SumPrecision::Full).linearise(spots, displacements, tangent, effort);
     }
 
@@ -178,6 +229,7 @@ impl Interaction for FieldSum {
         kept: &mut Tangent,
         effort: &mut Effort,
     ) {
-        self.for_targets(spots, targets, SumPrecision::Full).along_path(spots, rates, targets, found, kept, effort);
+        self.for_targets(spots, targets, SumPrecision::Full)
+            .along_path(spots, rates, targets, found, kept, effort);
     }
 }

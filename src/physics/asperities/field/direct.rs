@@ -42,7 +42,14 @@ impl DirectSum {
     ///
     /// Of `slips` only Eq 8 is used.
     #[must_use]
-    pub fn new(positions: Vec<[f64; 2]>, length_m: f64, material: &Material, kind: Kind, boundary: Boundary, slips: Slips) -> Self {
+    pub fn new(
+        positions: Vec<[f64; 2]>,
+        length_m: f64,
+        material: &Material,
+        kind: Kind,
+        boundary: Boundary,
+        slips: Slips,
+    ) -> Self {
         Self {
             kind,
             boundary,
@@ -112,7 +119,13 @@ impl DirectSum {
     /// Displacement \[m\] by all spots at each of `targets`, and its derivatives to the radii of all spots.
     ///
     /// `visit` receives the index in `targets`, the displacement and the derivatives.
-    pub(crate) fn rows(&self, spots: &Spots, targets: &[usize], effort: &mut Effort, mut visit: impl FnMut(usize, f64, &[f64])) {
+    pub(crate) fn rows(
+        &self,
+        spots: &Spots,
+        targets: &[usize],
+        effort: &mut Effort,
+        mut visit: impl FnMut(usize, f64, &[f64]),
+    ) {
         let n = spots.index.len();
         let mut slopes = vec![0.0; spots.columns.padded()];
         let moments = self.moments(&spots.columns);
@@ -139,18 +152,35 @@ impl DirectSum {
     /// Displacements at the spots themselves, with derivatives to all radii row by row.
     ///
     /// The image sums have six digits.
-    pub(crate) fn among(&self, spots: &Spots, table: &mut PairTable, fields: &mut Vec<f64>, slopes: &mut Vec<f64>, effort: &mut Effort) {
+    pub(crate) fn among(
+        &self,
+        spots: &Spots,
+        table: &mut PairTable,
+        fields: &mut Vec<f64>,
+        slopes: &mut Vec<f64>,
+        effort: &mut Effort,
+    ) {
         table.find(&spots.index, &self.positions, self.length, self.boundary);
         let moments = self.moments(&spots.columns);
         let Self { kind, compliance, pull, sag, .. } = *self;
-        table.fields(Sources { kind, columns: &spots.columns, moments: &moments, compliance, pull, sag }, fields, slopes);
+        table.fields(
+            Sources { kind, columns: &spots.columns, moments: &moments, compliance, pull, sag },
+            fields,
+            slopes,
+        );
         effort.pairs += (spots.index.len() * spots.index.len()) as u64;
     }
 
     /// Displacement at asperity `target` by all spots.
     ///
     /// With `SLOPES`, also its derivatives to their radii.
-    fn row<const SLOPES: bool>(&self, spots: &Spots, moments: &Moments, target: usize, slopes: &mut [f64]) -> f64 {
+    fn row<const SLOPES: bool>(
+        &self,
+        spots: &Spots,
+        moments: &Moments,
+        target: usize,
+        slopes: &mut [f64],
+    ) -> f64 {
         let columns = &spots.columns;
         let [x, y] = self.positions[target];
         let place = self.place([x, y]);
@@ -163,8 +193,8 @@ impl DirectSum {
             Kind::Point => {
                 let mut sum = 0.0;
                 for (j, load) in columns.load[..columns.len()].iter().enumerate() {
-                    let [dx, dy] =
-                        [x - columns.x[j], y - columns.y[j]].map(|d| d - self.length * (d * place.inverse_length).round_ties_even());
+                    let [dx, dy] = [x - columns.x[j], y - columns.y[j]]
+                        .map(|d| d - self.length * (d * place.inverse_length).round_ties_even());
                     let r = dx.hypot(dy);
                     let unit = if r > 0.0 { self.compliance / r } else { 0.0 };
                     sum += load * unit;
@@ -192,7 +222,12 @@ impl DirectSum {
 
 /// Field of all images but the nearest; adds its derivatives to `slopes`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: &Moments, slopes: &mut [f64]) -> f64 {
+fn image_fields<const SLOPES: bool>(
+    place: Place,
+    spots: &SpotColumns,
+    moments: &Moments,
+    slopes: &mut [f64],
+) -> f64 {
     let images: &RemainderSeries = &IMAGES;
     let columns = [&spots.x, &spots.y].map(|column| column.as_chunks::<LANES>().0);
     let mut all = [0.0; ORDERS];
@@ -212,7 +247,12 @@ fn image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: 
 
 /// Field of all images but the nearest, with image sums of six digits.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn rough_image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, moments: &Moments, slopes: &mut [f64]) -> f64 {
+fn rough_image_fields<const SLOPES: bool>(
+    place: Place,
+    spots: &SpotColumns,
+    moments: &Moments,
+    slopes: &mut [f64],
+) -> f64 {
     let centre: &Centre = &CENTRE;
     let columns = [&spots.x, &spots.y].map(|column| column.as_chunks::<LANES>().0);
     let mut sum = 0.0;
@@ -232,7 +272,12 @@ fn rough_image_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, mom
 
 /// Field of all images but the nearest, with tabulated image sums.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn known_image_fields<const SLOPES: bool>(index: &[usize], line: &[[f64; ORDERS]], moments: &Moments, slopes: &mut [f64]) -> f64 {
+fn known_image_fields<const SLOPES: bool>(
+    index: &[usize],
+    line: &[[f64; ORDERS]],
+    moments: &Moments,
+    slopes: &mut [f64],
+) -> f64 {
     let mut all = [[0.0; ORDERS]; 2];
     for (j, &source) in index.iter().enumerate() {
         gather(&mut all[j % 2], &line[source], &moments.value[j]);
@@ -264,14 +309,27 @@ fn in_sides(place: Place, x: &[f64; LANES], y: &[f64; LANES]) -> ([f64; LANES], 
 }
 
 impl Interaction for DirectSum {
-    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
+    fn displacements(
+        &self,
+        spots: &Spots,
+        targets: &[usize],
+        displacements: &mut Vec<f64>,
+        effort: &mut Effort,
+    ) {
         displacements.clear();
         effort.pairs += (spots.index.len() * targets.len()) as u64;
         let moments = self.moments(&spots.columns);
-        displacements.extend(targets.iter().map(|target| self.row::<false>(spots, &moments, *target, &mut [])));
+        displacements
+            .extend(targets.iter().map(|target| self.row::<false>(spots, &moments, *target, &mut [])));
     }
 
-    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+    fn linearise(
+        &self,
+        spots: &Spots,
+        displacements: &mut Vec<f64>,
+        tangent: &mut Tangent,
+        effort: &mut Effort,
+    ) {
         let n = spots.index.len();
         let mut matrix = tangent.take_dense(n);
         displacements.clear();

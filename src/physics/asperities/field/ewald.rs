@@ -2,9 +2,9 @@
 //!
 //! The mean is removed by a uniform background, so the load is self-balanced.
 //!
-//! In units `πE* = 1`, `L = 1`:
-//! `G(r) = Σ_R erfc(α|r+R|)/|r+R| + 2π Σ_{q≠0} erfc(q/2α) cos(q·r)/q − 2√π/α`, for any `α > 0` (Ewald).
-//! A plain sum of 1/r tails does not converge to it: at the paper's load it is wrong by more than the rms height.
+//! In units `πE* = 1`, `L = 1`: `G(r) = Σ_R erfc(α|r+R|)/|r+R| + 2π Σ_{q≠0} erfc(q/2α) cos(q·r)/q − 2√π/α`,
+//! for any `α > 0` (Ewald). A plain sum of 1/r tails does not converge to it: at the paper's load it is wrong
+//! by more than the rms height.
 
 use multiversion::multiversion;
 use std::f64::consts::PI;
@@ -194,7 +194,8 @@ impl RemainderSeries {
 
     /// All orders at several points, for inlining into a loop compiled for the machine's vectors.
     ///
-    /// The tabulated coefficients of each point are evaluated in vectors across orders, the remaining steps across points.
+    /// The tabulated coefficients of each point are evaluated in vectors across orders, the remaining steps
+    /// across points.
     #[inline(always)]
     pub(crate) fn local<const L: usize>(&self, x: &[f64; L], y: &[f64; L]) -> [[f64; ORDERS]; L] {
         let mut sums = [[0.0; ORDERS]; L];
@@ -258,7 +259,12 @@ fn cell_of<const N: usize>(x: f64, y: f64) -> (usize, f64, f64) {
 /// `high·t + low`, for all orders.
 #[inline(always)]
 fn step(high: [f64; ORDERS], t: f64, low: [f64; ORDERS]) -> [f64; ORDERS] {
-    [high[0].mul_add(t, low[0]), high[1].mul_add(t, low[1]), high[2].mul_add(t, low[2]), high[3].mul_add(t, low[3])]
+    [
+        high[0].mul_add(t, low[0]),
+        high[1].mul_add(t, low[1]),
+        high[2].mul_add(t, low[2]),
+        high[3].mul_add(t, low[3]),
+    ]
 }
 
 /// Polynomial in t that multiplies `s^(5−R)`.
@@ -312,7 +318,8 @@ fn fit<const N: usize>(rows: &[Vec<[f64; ORDERS]>], cells: usize) -> Vec<[[[f64;
     let mut all = Vec::with_capacity(cells * (cells + 1) / 2);
     for i in 0..cells {
         for j in 0..=i {
-            let samples: Vec<Vec<_>> = (0..N).map(|k| (0..N).map(|l| global(rows, place(i, k), place(j, l))).collect()).collect();
+            let samples: Vec<Vec<_>> =
+                (0..N).map(|k| (0..N).map(|l| global(rows, place(i, k), place(j, l))).collect()).collect();
             let mut cell = [[[0.0; ORDERS]; N]; N];
             for m in 0..N {
                 for n in 0..N {
@@ -373,7 +380,9 @@ fn global_series() -> Vec<Vec<[f64; ORDERS]>> {
     let angle = |k: usize| PI * (k as f64 + 0.5) / nodes as f64;
     // ξ = 8x² − 1 ∈ [−1, 1] for x ∈ [0, ½].
     let coordinate = |k: usize| ((angle(k).cos() + 1.0) / 8.0).sqrt();
-    let samples: Vec<Vec<_>> = (0..nodes).map(|i| (0..nodes).map(|j| image_sums(coordinate(i), coordinate(j), 2.5)).collect()).collect();
+    let samples: Vec<Vec<_>> = (0..nodes)
+        .map(|i| (0..nodes).map(|j| image_sums(coordinate(i), coordinate(j), 2.5)).collect())
+        .collect();
     (0..=DEGREE).map(|m| (0..=DEGREE - m).map(|n| chebyshev_coefficient(&samples, m, n)).collect()).collect()
 }
 

@@ -1,8 +1,8 @@
 //! Image sums by one polynomial for all pairs, vectorised.
 //!
-//! The exact sums, by cells or from a table, need a slow memory access for each pair.
-//! Spots outside a local problem are fixed while it is solved, so six digits of the image sums are enough there.
-//! The field of the images of one spot is a polynomial with nine digits; its coefficients contain the moments of the spot.
+//! The exact sums, by cells or from a table, need a slow memory access for each pair. Spots outside a local
+//! problem are fixed while it is solved, so six digits of the image sums are enough there. The field of the
+//! images of one spot is a polynomial with nine digits; its coefficients contain the moments of the spot.
 
 use super::ewald::{ORDERS, SERIES, chebyshev_coefficient, chebyshev_monomials, global};
 use super::spot_field::LANES;
@@ -88,7 +88,8 @@ impl ImageField {
 fn fit<const N: usize>() -> [Coefficients<N>; ORDERS] {
     let (degree, nodes) = (N - 1, N + 3);
     let place = |k: usize| 0.5 * (0.5 + 0.5 * (PI * (k as f64 + 0.5) / nodes as f64).cos()).sqrt();
-    let samples: Vec<Vec<_>> = (0..nodes).map(|i| (0..nodes).map(|j| global(&SERIES, place(i), place(j))).collect()).collect();
+    let samples: Vec<Vec<_>> =
+        (0..nodes).map(|i| (0..nodes).map(|j| global(&SERIES, place(i), place(j))).collect()).collect();
     let monomials = chebyshev_monomials(N);
     let mut found = [[[0.0; N]; N]; ORDERS];
     for m in 0..N {
@@ -148,7 +149,8 @@ mod tests {
                 for (order, worst) in worst.iter_mut().enumerate() {
                     *worst = worst.max((found[order][0] / exact[order] - 1.0).abs());
                 }
-                let exact: f64 = image_sums(x, y, 2.5).iter().rev().fold(0.0, |sum, order| 0.01f64.mul_add(sum, *order));
+                let exact: f64 =
+                    image_sums(x, y, 2.5).iter().rev().fold(0.0, |sum, order| 0.01f64.mul_add(sum, *order));
                 worst_field = worst_field.max((field.at(&[x; LANES], &[y; LANES])[0] / exact - 1.0).abs());
             }
         }

@@ -116,7 +116,10 @@ impl Tangent {
 }
 
 /// Position in `others` of each of `numbers`, if present; both lists are ascending.
-pub(crate) fn places_in<'a>(numbers: &'a [usize], others: &'a [usize]) -> impl Iterator<Item = Option<usize>> + 'a {
+pub(crate) fn places_in<'a>(
+    numbers: &'a [usize],
+    others: &'a [usize],
+) -> impl Iterator<Item = Option<usize>> + 'a {
     let mut at = 0;
     numbers.iter().map(move |number| {
         while others.get(at).is_some_and(|other| other < number) {
@@ -133,19 +136,31 @@ pub trait Interaction: Sync {
     /// Targets are asperity numbers, and their order is kept.
     ///
     /// A spot does not act on its own centre, but its periodic images and the background do.
-    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort);
+    fn displacements(
+        &self,
+        spots: &Spots,
+        targets: &[usize],
+        displacements: &mut Vec<f64>,
+        effort: &mut Effort,
+    );
 
     /// Displacements at the spots themselves, and the tangent.
     ///
     /// Reuses the geometry cached in `tangent`.
-    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort);
+    fn linearise(
+        &self,
+        spots: &Spots,
+        displacements: &mut Vec<f64>,
+        tangent: &mut Tangent,
+        effort: &mut Effort,
+    );
 
     /// Displacement at each of `targets`, and its derivative along a path.
     ///
     /// `rates` are the derivatives of the spots' radii along the path.
     ///
-    /// Writes the displacement and `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j` to `found`. With `rates` = da_j/dδ the latter is dŵ_i/dδ.
-    /// The geometry is cached in `kept` for the next call.
+    /// Writes the displacement and `dŵ_i = Σ_j (∂ŵ_i/∂a_j) rates_j` to `found`. With `rates` = da_j/dδ the
+    /// latter is dŵ_i/dδ. The geometry is cached in `kept` for the next call.
     fn along_path(
         &self,
         spots: &Spots,

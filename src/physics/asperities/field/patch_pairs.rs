@@ -27,7 +27,13 @@ impl PairTable {
     /// Computes the pairs of the asperities `index` if the set has changed.
     ///
     /// `positions` are in m, and the image sums have six digits.
-    pub(crate) fn find(&mut self, index: &[usize], positions: &Grown<[f64; 2]>, length: f64, boundary: Boundary) {
+    pub(crate) fn find(
+        &mut self,
+        index: &[usize],
+        positions: &Grown<[f64; 2]>,
+        length: f64,
+        boundary: Boundary,
+    ) {
         if self.index != index {
             self.index.clear();
             self.index.extend_from_slice(index);
@@ -77,7 +83,11 @@ fn find(table: &mut PairTable, positions: &Grown<[f64; 2]>, length: f64, boundar
                     r[k] = dx[k].mul_add(dx[k], dy[k] * dy[k]).sqrt();
                 }
             }
-            let images = if periodic { centre.sums(&dx.map(|d| d / length), &dy.map(|d| d / length)) } else { [[0.0; LANES]; 2] };
+            let images = if periodic {
+                centre.sums(&dx.map(|d| d / length), &dy.map(|d| d / length))
+            } else {
+                [[0.0; LANES]; 2]
+            };
             table.passes.push(Pass { r, inverse_r: r.map(|r| 1.0 / r), images });
         }
     }
@@ -88,15 +98,19 @@ fn evaluate(table: &PairTable, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &
     let n = table.index.len();
     let columns = [&by.columns.a, &by.columns.root_a, &by.columns.inverse_root_a, &by.columns.inverse_radius];
     let [a, root_a, inverse_root_a, inverse_radius] = columns.map(|column| column.as_chunks::<LANES>().0);
-    let [load, load_slope] = [&by.columns.load, &by.columns.load_slope].map(|column| column.as_chunks::<LANES>().0);
-    let moments: Vec<[[f64; LANES]; 4]> = (0..n.div_ceil(LANES)).map(|pass| first_moments(by.moments, pass * LANES, n)).collect();
+    let [load, load_slope] =
+        [&by.columns.load, &by.columns.load_slope].map(|column| column.as_chunks::<LANES>().0);
+    let moments: Vec<[[f64; LANES]; 4]> =
+        (0..n.div_ceil(LANES)).map(|pass| first_moments(by.moments, pass * LANES, n)).collect();
     fields.clear();
     // Whole passes are written, each over the padding of the one before.
     slopes.clear();
     slopes.resize(n * n + LANES, 0.0);
     for (target, row) in table.passes.chunks(n.div_ceil(LANES).max(1)).enumerate() {
         let mut sums = [0.0; LANES];
-        for (pass, (pairs, [values, second_values, rates, second_rates])) in row.iter().zip(&moments).enumerate() {
+        for (pass, (pairs, [values, second_values, rates, second_rates])) in
+            row.iter().zip(&moments).enumerate()
+        {
             let (mut field, mut slope) = ([0.0; LANES], [0.0; LANES]);
             match by.kind {
                 Kind::None => {}
@@ -108,7 +122,16 @@ fn evaluate(table: &PairTable, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &
                 }
                 Kind::Spots => {
                     let shape = (&a[pass], &root_a[pass], &inverse_root_a[pass], &inverse_radius[pass]);
-                    (field, slope) = field_at(&pairs.r, &pairs.inverse_r, shape.0, shape.1, shape.2, shape.3, by.pull, by.sag);
+                    (field, slope) = field_at(
+                        &pairs.r,
+                        &pairs.inverse_r,
+                        shape.0,
+                        shape.1,
+                        shape.2,
+                        shape.3,
+                        by.pull,
+                        by.sag,
+                    );
                 }
             }
             for k in 0..LANES {
@@ -123,7 +146,8 @@ fn evaluate(table: &PairTable, by: Sources<'_>, fields: &mut Vec<f64>, slopes: &
     slopes.truncate(n * n);
 }
 
-/// First two moments of the sources `from` to `n` in one pass, and their derivatives to the radii; 0 for the padding.
+/// First two moments of the sources `from` to `n` in one pass, and their derivatives to the radii; 0 for the
+/// padding.
 #[inline(always)]
 fn first_moments(moments: &Moments, from: usize, n: usize) -> [[f64; LANES]; 4] {
     let mut first = [[0.0; LANES]; 4];

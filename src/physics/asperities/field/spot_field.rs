@@ -1,10 +1,10 @@
 //! Displacement field of one JKR contact spot (Eqs 6–8), without cancellation.
 //!
 //! Outside the spot (`r > a`), with `x = a/r` and `w = sqrt(1 − x²)`,
-//! `ŵ = a²/(πR)·[sqrt(r²/a² − 1) + (2 − r²/a²) asin x] − (2/π) sqrt(2πaΔγ/E*) asin x`.
-//! The bracket as printed suffers from cancellation: its relative error grows as `(r/a)²` and is 1e-4 at `r/a` = 1e6.
-//! But `[…]/x` and `asin(x)/x` are analytic in `w` on `[0, 1]` (the nearest singularity is `w = −1`).
-//! One polynomial in `w` for each is therefore accurate for every `r ≥ a`.
+//! `ŵ = a²/(πR)·[sqrt(r²/a² − 1) + (2 − r²/a²) asin x] − (2/π) sqrt(2πaΔγ/E*) asin x`. The bracket as printed
+//! suffers from cancellation: its relative error grows as `(r/a)²` and is 1e-4 at `r/a` = 1e6. But
+//! `[…]/x` and `asin(x)/x` are analytic in `w` on `[0, 1]` (the nearest singularity is `w =
+//! −1`). One polynomial in `w` for each is therefore accurate for every `r ≥ a`.
 
 use crate::model::Slips;
 use multiversion::multiversion;
@@ -124,7 +124,8 @@ pub fn spot_field(r: f64, a: f64, radius: f64, pull: f64) -> (f64, f64) {
 #[must_use]
 #[multiversion(targets("x86_64+avx2+fma"))]
 pub fn spot_field_as_printed(r: f64, a: f64, radius: f64, pull: f64, slips: Slips) -> (f64, f64) {
-    let ([value], [slope]) = field(&[r * r], &[a], &[a.sqrt()], &[1.0 / a.sqrt()], &[1.0 / radius], pull, sag(slips));
+    let ([value], [slope]) =
+        field(&[r * r], &[a], &[a.sqrt()], &[1.0 / a.sqrt()], &[1.0 / radius], pull, sag(slips));
     (value, slope)
 }
 
@@ -250,7 +251,16 @@ impl SpotColumns {
         self.count = 0;
         for spot in spots {
             let root_a = spot.a.sqrt();
-            self.push([spot.x, spot.y, spot.a, root_a, 1.0 / root_a, 1.0 / spot.radius, spot.load, spot.load_slope]);
+            self.push([
+                spot.x,
+                spot.y,
+                spot.a,
+                root_a,
+                1.0 / root_a,
+                1.0 / spot.radius,
+                spot.load,
+                spot.load_slope,
+            ]);
             self.count += 1;
         }
         self.fill_up();
@@ -346,15 +356,25 @@ pub(crate) fn squared_distances(place: Place, x: &[f64; LANES], y: &[f64; LANES]
 
 /// Sum of the fields of all sources at one point, without that of a source at the point itself.
 ///
-/// With `SLOPES`, the derivative of each field to its spot's radius is written to `slopes`, which has the padded length.
+/// With `SLOPES`, the derivative of each field to its spot's radius is written to `slopes`, which has the
+/// padded length.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 pub(crate) fn spot_fields<const SLOPES: bool>(place: Place, spots: &SpotColumns, slopes: &mut [f64]) -> f64 {
     let columns = [&spots.x, &spots.y, &spots.a, &spots.root_a, &spots.inverse_root_a, &spots.inverse_radius];
-    let [x, y, a, root_a, inverse_root_a, inverse_radius] = columns.map(|column| column.as_chunks::<LANES>().0);
+    let [x, y, a, root_a, inverse_root_a, inverse_radius] =
+        columns.map(|column| column.as_chunks::<LANES>().0);
     let mut strands = [0.0; LANES];
     for pass in 0..x.len() {
         let r2 = squared_distances(place, &x[pass], &y[pass]);
-        let (value, slope) = field(&r2, &a[pass], &root_a[pass], &inverse_root_a[pass], &inverse_radius[pass], place.pull, place.sag);
+        let (value, slope) = field(
+            &r2,
+            &a[pass],
+            &root_a[pass],
+            &inverse_root_a[pass],
+            &inverse_radius[pass],
+            place.pull,
+            place.sag,
+        );
         for k in 0..LANES {
             strands[k] += either(r2[k] == 0.0, 0.0, value[k]);
         }

@@ -12,9 +12,14 @@ use crate::asperities::solve::local::Hold;
 use crate::event_kind::{EventKind, SpotStatus};
 
 impl EquilibriumPath {
-    /// Applies a transition in the local problem that is at it, relaxes the local problem, and records both; nothing if the transition would be undone
-    /// at once.
-    pub(super) fn apply(&mut self, transition: Transition, located: Option<Located>, avalanche: &mut Avalanche) -> Result<(), Rejection> {
+    /// Applies a transition in the local problem that is at it, relaxes the local problem, and records both;
+    /// nothing if the transition would be undone at once.
+    pub(super) fn apply(
+        &mut self,
+        transition: Transition,
+        located: Option<Located>,
+        avalanche: &mut Avalanche,
+    ) -> Result<(), Rejection> {
         let mut before = self.begin();
         let applied = match located {
             Some(Located::Fold(at)) => {
@@ -32,7 +37,8 @@ impl EquilibriumPath {
         Ok(())
     }
 
-    /// Moves the local problem over the fold at which it is; the change of the potential on the way is returned \[J\].
+    /// Moves the local problem over the fold at which it is; the change of the potential on the way is
+    /// returned \[J\].
     fn step_over_fold(&mut self, at: usize) -> f64 {
         let problem = &*self.problem();
         let local = &mut self.neighbourhood.local;
@@ -44,8 +50,13 @@ impl EquilibriumPath {
         potential
     }
 
-    /// Inserts or removes an asperity and solves the local problem; all transitions on the way are returned, nothing if none is applied.
-    fn change_status(&mut self, transition: Transition, before: &mut Before) -> Result<Option<Vec<Transition>>, Rejection> {
+    /// Inserts or removes an asperity and solves the local problem; all transitions on the way are returned,
+    /// nothing if none is applied.
+    fn change_status(
+        &mut self,
+        transition: Transition,
+        before: &mut Before,
+    ) -> Result<Option<Vec<Transition>>, Rejection> {
         let Some(entered) = self.insert_or_remove(transition, before)? else { return Ok(None) };
         let problem = &*self.problem();
         let uncovers = transition.kind == EventKind::Uncover;
@@ -71,9 +82,13 @@ impl EquilibriumPath {
         Ok(Some(applied))
     }
 
-    /// Inserts an asperity into the local problem or removes it, without solving; the transition is returned as it is recorded, nothing if
-    /// there is nothing to solve or record.
-    fn insert_or_remove(&mut self, transition: Transition, before: &mut Before) -> Result<Option<Transition>, PhysicsError> {
+    /// Inserts an asperity into the local problem or removes it, without solving; the transition is returned
+    /// as it is recorded, nothing if there is nothing to solve or record.
+    fn insert_or_remove(
+        &mut self,
+        transition: Transition,
+        before: &mut Before,
+    ) -> Result<Option<Transition>, PhysicsError> {
         let problem = &*self.problem();
         let i = transition.asperity;
         let asperity = &problem.asperities[i];
@@ -118,7 +133,9 @@ impl EquilibriumPath {
         let place = local.place(problem, i, displacement, drift, &mut self.solver.effort);
         // The displacement by contacts as they are predicted contains what is pending for it.
         self.pending.set_applied(i);
-        match problem.asperities[i].radius_at_penetration(mean_penetration + problem.heights[i] - displacement) {
+        match problem.asperities[i]
+            .radius_at_penetration(mean_penetration + problem.heights[i] - displacement)
+        {
             Some(radius) => {
                 local.insert(place, radius);
                 if problem.merges() {
@@ -142,14 +159,17 @@ impl EquilibriumPath {
         covered_again || applied.iter().any(|transition| transition.undoes(uncovering))
     }
 
-    /// Postpones an uncovering until the covering contact has shrunk further. Where that has left, the asperity is absorbed by the contact
-    /// that covers it; without one it is free, and blocked until its penetration falls below the jump-in.
+    /// Postpones an uncovering until the covering contact has shrunk further. Where that has left, the
+    /// asperity is absorbed by the contact that covers it; without one it is free, and blocked until its
+    /// penetration falls below the jump-in.
     pub(super) fn keep_covered(&mut self, i: usize, mean_penetration: f64) {
         let Status::Covered { by, release_m } = self.predictor.state.status[i] else { return };
-        let (radius, retried) = (&self.predictor.state.radius, self.solver.problem.numerics.events.retried_release);
+        let (radius, retried) =
+            (&self.predictor.state.radius, self.solver.problem.numerics.events.retried_release);
         match self.predictor.state.carrier(by) {
             Some(carrier) if carrier == by => {
-                self.predictor.state.status[i] = Status::Covered { by, release_m: retried * radius[by].min(release_m) };
+                self.predictor.state.status[i] =
+                    Status::Covered { by, release_m: retried * radius[by].min(release_m) };
             }
             Some(carrier) => {
                 let release_m = retried * radius[carrier];

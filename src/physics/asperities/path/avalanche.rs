@@ -1,8 +1,9 @@
 //! Avalanches: all transitions at one mean penetration that follow from an event.
 //!
-//! One transition is applied at a time, the most overdue first, and the local problem relaxes before the next is chosen. Contacts merge and
-//! split only when nothing else is due. An asperity that has left contact does not return within the avalanche. Contacts with a large pending
-//! displacement are solved in local problems of their own, the largest first. After a large avalanche the global problem is solved.
+//! One transition is applied at a time, the most overdue first, and the local problem relaxes before the next
+//! is chosen. Contacts merge and split only when nothing else is due. An asperity that has left contact does
+//! not return within the avalanche. Contacts with a large pending displacement are solved in local problems
+//! of their own, the largest first. After a large avalanche the global problem is solved.
 
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
@@ -31,10 +32,14 @@ impl EquilibriumPath {
         self.run_avalanche(avalanche).map(|_| ())
     }
 
-    /// Applies what is due among the open asperities until nothing is, and no pending displacement exceeds the limit; the touched
-    /// asperities are returned. A transition that would undo an earlier one waits for the path to continue. Nothing is returned if the
-    /// propagation does not end or the avalanche is large: the global problem is to be solved.
-    pub(super) fn run_avalanche(&mut self, mut avalanche: Avalanche) -> Result<Option<Vec<usize>>, Rejection> {
+    /// Applies what is due among the open asperities until nothing is, and no pending displacement exceeds
+    /// the limit; the touched asperities are returned. A transition that would undo an earlier one waits for
+    /// the path to continue. Nothing is returned if the propagation does not end or the avalanche is large:
+    /// the global problem is to be solved.
+    pub(super) fn run_avalanche(
+        &mut self,
+        mut avalanche: Avalanche,
+    ) -> Result<Option<Vec<usize>>, Rejection> {
         let mean_penetration = self.neighbourhood.local.mean_penetration;
         let mut solves = 0;
         let mut propagated = true;
@@ -43,7 +48,8 @@ impl EquilibriumPath {
             avalanche.open.sort();
             avalanche.open.dedup();
             let due = self.due_transitions(&avalanche.open, &avalanche.open);
-            // Contacts merge and split in equilibrium: where others have yet to respond, they have grown too far.
+            // Contacts merge and split in equilibrium: where others have yet to respond, they have grown too
+            // far.
             let mut coalescing = Vec::new();
             let due_now = most_overdue(&due, &avalanche.moved, self.state());
             let next = due_now.or_else(|| self.worst_pending().map(Transition::snap)).or_else(|| {
@@ -51,7 +57,8 @@ impl EquilibriumPath {
                 most_overdue(&coalescing, &avalanche.moved, self.state())
             });
             let Some(transition) = next else {
-                self.postponed.extend(due.iter().chain(&coalescing).map(|trigger| trigger.transition.asperity));
+                self.postponed
+                    .extend(due.iter().chain(&coalescing).map(|trigger| trigger.transition.asperity));
                 break;
             };
             self.count_trial(mean_penetration, transition.asperity)?;
@@ -78,7 +85,11 @@ impl EquilibriumPath {
     /// have left contact, and removes merged contacts that no longer exist.
     fn close_avalanche(&mut self, moved: &[Transition]) {
         let (status, summits) = (&self.predictor.state.status, self.solver.problem.summits());
-        for i in moved.iter().map(|transition| transition.asperity).filter(|i| *i >= summits && status[*i] == Status::Free) {
+        for i in moved
+            .iter()
+            .map(|transition| transition.asperity)
+            .filter(|i| *i >= summits && status[*i] == Status::Free)
+        {
             Arc::make_mut(&mut self.solver.problem).neighbours.remove(i);
         }
         let problem = &*self.problem();
@@ -99,7 +110,10 @@ impl EquilibriumPath {
                     }
                 }
                 Status::Contact | Status::Merged { .. } => {}
-                Status::Free => self.predictor.state.barred[i] |= self.predictor.traces[i].has_reached(problem.jump_in[i]),
+                Status::Free => {
+                    self.predictor.state.barred[i] |=
+                        self.predictor.traces[i].has_reached(problem.jump_in[i]);
+                }
             }
         }
     }
@@ -112,9 +126,9 @@ impl EquilibriumPath {
         due
     }
 
-    /// Other transitions that are due, but for those of asperities that change to and fro: such an asperity is frozen for a while, and counted.
-    /// Two contacts that each grow with the other and shrink without it have no stable state otherwise; nor have three of which each
-    /// absorbs the next.
+    /// Other transitions that are due, but for those of asperities that change to and fro: such an asperity
+    /// is frozen for a while, and counted. Two contacts that each grow with the other and shrink without it
+    /// have no stable state otherwise; nor have three of which each absorbs the next.
     pub(super) fn due_transitions(&mut self, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = self.problem().triggers(&self.predictor, touched, free);
         let most = self.numerics().events.changes_per_asperity;
@@ -128,7 +142,8 @@ impl EquilibriumPath {
                 && state.radius[by] == 0.0
                 && !allowed
             {
-                // Its covering contact has left: it is uncovered, or absorbed by the contact that covers that one.
+                // Its covering contact has left: it is uncovered, or absorbed by the contact that covers that
+                // one.
                 allowed = state.carrier(by).is_none();
                 if !allowed {
                     carried.push(i);
@@ -152,6 +167,8 @@ impl EquilibriumPath {
 fn most_overdue(due: &[Trigger], moved: &[Transition], state: &State) -> Option<Transition> {
     due.iter()
         .filter(|trigger| !trigger.transition.returns(moved, state))
-        .max_by(|u, v| u.overshoot.total_cmp(&v.overshoot).then(v.transition.asperity.cmp(&u.transition.asperity)))
+        .max_by(|u, v| {
+            u.overshoot.total_cmp(&v.overshoot).then(v.transition.asperity.cmp(&u.transition.asperity))
+        })
         .map(|trigger| trigger.transition)
 }

@@ -1,4 +1,5 @@
-//! Guard against asperities that change their status to and fro, and contacts that merge and split to and fro.
+//! Guard against asperities that change their status to and fro, and contacts that merge and split to and
+//! fro.
 
 use crate::asperities::contact::transition::Transition;
 use serde::{Deserialize, Serialize};
@@ -17,13 +18,15 @@ impl ChatterGuard {
         self.changes.resize(n, 0);
     }
 
-    /// Makes room for a merged contact, which goes on with the changes of its parts: it is a new one after every merging.
+    /// Makes room for a merged contact, which goes on with the changes of its parts: it is a new one after
+    /// every merging.
     pub(super) fn join(&mut self, parts: [usize; 2]) {
         self.changes.push(parts.map(|part| self.changes[part]).into_iter().max().unwrap_or(0));
         parts.iter().for_each(|part| self.count(*part));
     }
 
-    /// True if a transition may be applied, where an asperity may change `most` times other than out of contact.
+    /// True if a transition may be applied, where an asperity may change `most` times other than out of
+    /// contact.
     pub(super) fn allows(&self, transition: &Transition, most: u8) -> bool {
         transition.limited_by().all(|i| self.changes[i] < most)
     }

@@ -51,7 +51,8 @@ pub(crate) struct PathCheckpoint {
     /// Pairs that overlap and do not merge before they have been apart; at the beginning of a path, the pairs
     /// that overlap there.
     pub(super) parted: Option<TouchingPairs>,
-    /// Heights with the difference fields of merged contacts \[m\]; at the beginning of a path, nothing: they follow from the state.
+    /// Heights with the difference fields of merged contacts \[m\]; at the beginning of a path, nothing: they
+    /// follow from the state.
     pub(crate) heights: Option<Vec<f64>>,
 }
 
@@ -64,7 +65,11 @@ impl PathCheckpoint {
         let off = off.max(steps.min_scale * problem.rms_height_m);
         // A power of two of the grid, so that round output steps end increments.
         let unit = steps.exact_grid * problem.rms_height_m;
-        let share = if problem.solves_whole() { steps.longest_increment_of_whole() } else { steps.longest_increment() };
+        let share = if problem.solves_whole() {
+            steps.longest_increment_of_whole()
+        } else {
+            steps.longest_increment()
+        };
         let longest = unit * (share * off / unit).log2().floor().exp2();
         Self {
             state,

@@ -1,4 +1,5 @@
-//! Condition of each kind of event: what reaches which value. Whether it is due, how late it is and where it is located follow from it.
+//! Condition of each kind of event: what reaches which value. Whether it is due, how late it is and where it
+//! is located follow from it.
 
 use super::predictor::Predictor;
 use crate::asperities::contact::problem::Problem;
@@ -24,7 +25,9 @@ impl Problem {
     pub(crate) fn condition(&self, change: &Transition, state: &State) -> Option<Condition> {
         let i = change.asperity;
         match (change.kind, state.status[i], change.by) {
-            (EventKind::JumpIn, Status::Free, _) => Some(Condition::Penetration { asperity: i, value_m: self.jump_in[i] }),
+            (EventKind::JumpIn, Status::Free, _) => {
+                Some(Condition::Penetration { asperity: i, value_m: self.jump_in[i] })
+            }
             (EventKind::JumpOff, Status::Contact, _) => {
                 Some(Condition::Shrinking { contact: i, value_m: self.asperities[i].jump_off_radius() })
             }
@@ -32,8 +35,14 @@ impl Problem {
                 Some(Condition::Growing { contact: by, value_m: self.absorbing_radius(i, by) })
             }
             // The footprint of a part of a merged contact stays covered until it splits.
-            (EventKind::Uncover, Status::Covered { by, .. }, _) if matches!(state.status[by], Status::Merged { .. }) => None,
-            (EventKind::Uncover, Status::Covered { by, release_m }, _) => Some(Condition::Shrinking { contact: by, value_m: release_m }),
+            (EventKind::Uncover, Status::Covered { by, .. }, _)
+                if matches!(state.status[by], Status::Merged { .. }) =>
+            {
+                None
+            }
+            (EventKind::Uncover, Status::Covered { by, release_m }, _) => {
+                Some(Condition::Shrinking { contact: by, value_m: release_m })
+            }
             (EventKind::Merge, _, Some(by)) => Some(Condition::Touching { pair: [i, by] }),
             (EventKind::Split, Status::Contact, _) => {
                 state.release_of_merged(self, i).map(|value_m| Condition::Shrinking { contact: i, value_m })
@@ -62,7 +71,10 @@ impl Predictor {
             (EventKind::Cover, _, Some(by)) => state.radius[i] < state.radius[by],
             (EventKind::Merge, _, Some(by)) => self.may_merge(i, by),
             (EventKind::Uncover, ..) => false,
-            (EventKind::JumpOff | EventKind::Cover | EventKind::Snap | EventKind::Merge | EventKind::Split, ..) => true,
+            (
+                EventKind::JumpOff | EventKind::Cover | EventKind::Snap | EventKind::Merge | EventKind::Split,
+                ..,
+            ) => true,
         }
     }
 }

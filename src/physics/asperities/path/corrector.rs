@@ -27,8 +27,14 @@ enum Since {
 }
 
 impl EquilibriumPath {
-    /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the transitions that are overdue there.
-    pub(super) fn correct(&mut self, target: f64, arrival: Arrival, precision: Precision) -> Result<(), Rejection> {
+    /// Solves the global problem at a mean penetration \[m\], from the predictors, and applies the
+    /// transitions that are overdue there.
+    pub(super) fn correct(
+        &mut self,
+        target: f64,
+        arrival: Arrival,
+        precision: Precision,
+    ) -> Result<(), Rejection> {
         let (is_checked, has_jumped) = (arrival == Arrival::CheckedIncrement, arrival == Arrival::Jump);
         self.precision = precision;
         let pending = self.pending.all().to_vec();
@@ -43,7 +49,11 @@ impl EquilibriumPath {
             if !first.residual_m.is_nan() {
                 self.log.drift_m = self.log.drift_m.max(first.residual_m);
             }
-            let rates = if is_checked { self.solve_globally(first, Failing::EndsAtOnce)?.0 } else { self.solve_or_relax(first, target)? };
+            let rates = if is_checked {
+                self.solve_globally(first, Failing::EndsAtOnce)?.0
+            } else {
+                self.solve_or_relax(first, target)?
+            };
             let since = match (has_jumped || rounds > 0, self.pending.is_smooth()) {
                 (true, _) => Since::Jump,
                 (false, true) => Since::Growth,
@@ -64,8 +74,9 @@ impl EquilibriumPath {
         }
     }
 
-    /// Solves the global problem from the state that was evaluated last. Where contacts have no equilibrium nearby they relax, at last all of them; what
-    /// leaves or is absorbed on the way belongs to the present avalanche. The rates are returned.
+    /// Solves the global problem from the state that was evaluated last. Where contacts have no equilibrium
+    /// nearby they relax, at last all of them; what leaves or is absorbed on the way belongs to the present
+    /// avalanche. The rates are returned.
     fn solve_or_relax(&mut self, first: NotConverged, target: f64) -> Result<Vec<f64>, Rejection> {
         let (start, before) = (self.state().clone(), self.predictor.totals(target));
         match self.solve_globally(first, Failing::Relaxes) {
@@ -86,8 +97,13 @@ impl EquilibriumPath {
         }
     }
 
-    /// Solves the global problem from the state that was evaluated last; its rates are returned if it is stable, with the relaxations on the way.
-    fn solve_globally(&mut self, first: NotConverged, failing: Failing) -> Result<(Vec<f64>, Relaxed), NotConverged> {
+    /// Solves the global problem from the state that was evaluated last; its rates are returned if it is
+    /// stable, with the relaxations on the way.
+    fn solve_globally(
+        &mut self,
+        first: NotConverged,
+        failing: Failing,
+    ) -> Result<(Vec<f64>, Relaxed), NotConverged> {
         let tolerance = match self.precision {
             Precision::Exact => self.problem().tolerance_m(),
             Precision::Sufficient => self.accuracy().sufficient() * self.frame.scale,
@@ -95,13 +111,18 @@ impl EquilibriumPath {
         let relaxed = self.solver.newton(&mut self.predictor.state, first, failing, tolerance)?;
         let rates = self.finite_rates(first)?;
         let stable = self.state().stability > 0.0;
-        if stable { Ok((rates, relaxed)) } else { Err(NotConverged::because(Reason::Unstable, first.asperity)) }
+        if stable {
+            Ok((rates, relaxed))
+        } else {
+            Err(NotConverged::because(Reason::Unstable, first.asperity))
+        }
     }
 
     /// Applies overdue transitions, each with its avalanche, if it is still due.
     fn apply_overdue(&mut self, due: Vec<(f64, Transition)>) -> Result<(), Rejection> {
         // Contacts meet in equilibrium, one pair at a time.
-        let (mut coalescing, others): (Vec<_>, Vec<_>) = due.into_iter().partition(|(_, transition)| transition.kind.is_merging());
+        let (mut coalescing, others): (Vec<_>, Vec<_>) =
+            due.into_iter().partition(|(_, transition)| transition.kind.is_merging());
         coalescing.truncate(1);
         for (_, transition) in if others.is_empty() { coalescing } else { others } {
             if self.problem().is_due(&transition, &self.predictor) {
@@ -111,7 +132,8 @@ impl EquilibriumPath {
         Ok(())
     }
 
-    /// Rates of the contacts at the equilibrium that was evaluated last; where they are not numbers, the reason is `first`.
+    /// Rates of the contacts at the equilibrium that was evaluated last; where they are not numbers, the
+    /// reason is `first`.
     fn finite_rates(&mut self, first: NotConverged) -> Result<Vec<f64>, NotConverged> {
         let rates = self.solver.rates(&mut self.predictor.state, self.precision);
         if rates.iter().all(|rate| rate.is_finite()) { Ok(rates) } else { Err(first) }
@@ -120,10 +142,12 @@ impl EquilibriumPath {
     /// True if the predictors are too far from the equilibrium, apart from pending displacements.
     fn is_astray(&self, pending: &[f64]) -> bool {
         let contacts = &self.state().contacts;
-        let off: Vec<f64> = contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| residual + pending[i]).collect();
+        let off: Vec<f64> =
+            contacts.iter().zip(&self.solver.residual).map(|(&i, residual)| residual + pending[i]).collect();
         let worst = off.iter().map(|r| r.abs()).fold(0.0, f64::max);
         let rms = (dot(&off, &off) / off.len().max(1) as f64).sqrt();
-        worst > self.accuracy().worst_residual() * self.frame.scale || rms > self.accuracy().drift() * self.frame.scale
+        worst > self.accuracy().worst_residual() * self.frame.scale
+            || rms > self.accuracy().drift() * self.frame.scale
     }
 
     /// Replaces all predictors after a global solve, and counts the work since the last one.
@@ -149,7 +173,8 @@ impl EquilibriumPath {
             // At constant penetration no work is done: the jump dissipates the decrease of the potential.
             self.energy.charge_last_event();
         } else {
-            // Events were charged with the potential of a contact whose other members keep their loads; these have responded now.
+            // Events were charged with the potential of a contact whose other members keep their loads; these
+            // have responded now.
             self.log.charge(relaxed);
         }
         self.energy.close(&mut self.log, target, potential);
@@ -159,15 +184,17 @@ impl EquilibriumPath {
         } else {
             self.log.pass(target, load);
         }
-        let merged_here = |number: &usize| self.state().merged[number - problem.summits()].mean_penetration_m == target;
+        let merged_here =
+            |number: &usize| self.state().merged[number - problem.summits()].mean_penetration_m == target;
         for number in (problem.summits()..problem.len()).filter(merged_here).collect::<Vec<_>>() {
             self.predictor.keep_merged(problem, number);
         }
         self.predict_jump_ins(rates);
     }
 
-    /// Replaces the predictors of all contacts, and counts their work. The energy of their response to pending displacements \[J\] is
-    /// returned, and the change of their load beyond the prediction \[N\], added to `grown`.
+    /// Replaces the predictors of all contacts, and counts their work. The energy of their response to
+    /// pending displacements \[J\] is returned, and the change of their load beyond the prediction \[N\],
+    /// added to `grown`.
     fn replace_traces(&mut self, rates: &[f64], since: Since, pending: &[f64], mut grown: f64) -> (f64, f64) {
         let problem = &*self.problem();
         let has_jumped = since != Since::Growth;
@@ -201,9 +228,11 @@ impl EquilibriumPath {
         let all = self.solver.begins_block(target);
         let near = |i: &usize| {
             let trace = &self.predictor.traces[*i];
-            all || !trace.is_known() || trace.exceeds(problem.jump_in[*i] - self.out_of_reach(target - trace.at))
+            all || !trace.is_known()
+                || trace.exceeds(problem.jump_in[*i] - self.out_of_reach(target - trace.at))
         };
-        let wanted: Vec<usize> = (0..problem.summits()).filter(|i| self.state().status[*i] == Status::Free).filter(near).collect();
+        let wanted: Vec<usize> =
+            (0..problem.summits()).filter(|i| self.state().status[*i] == Status::Free).filter(near).collect();
         let found = self.solver.penetrations(&self.predictor.state, rates, &wanted);
         let span = self.out_of_reach(self.steps.longest());
         self.predictor.candidates.clear();
@@ -233,7 +262,8 @@ impl EquilibriumPath {
             let waits = postponed.contains(&trigger.transition.asperity);
             if waits { 0.0 } else { problem.lateness(trigger, &self.predictor) }
         };
-        let mut late: Vec<(f64, Transition)> = due.iter().map(|trigger| (lateness(trigger), trigger.transition)).collect();
+        let mut late: Vec<(f64, Transition)> =
+            due.iter().map(|trigger| (lateness(trigger), trigger.transition)).collect();
         late.sort_by(|u, v| v.0.total_cmp(&u.0).then(u.1.asperity.cmp(&v.1.asperity)));
         late
     }
@@ -246,7 +276,8 @@ impl EquilibriumPath {
         Ok(())
     }
 
-    /// Enters the transitions of a relaxation; the last event is charged with the loss of the potential at the next global solve.
+    /// Enters the transitions of a relaxation; the last event is charged with the loss of the potential at
+    /// the next global solve.
     fn enter_relaxed(&mut self, changes: &[Transition], before: Totals, target: f64) {
         for change in changes {
             self.predictor.traces[change.asperity].forget();

@@ -1,8 +1,9 @@
 //! Energy balance of a path: work of the load, potential, and energy dissipated in events.
 //!
-//! Between two global solves `Π + Σ energy dissipated − work` is constant. The events and the work are in the event log, and a whole branch is checked in
-//! `cycle::soundness`. Events are accounted for with the potential of their local problem while the rest of the contact keeps its loads; the response of
-//! the rest is known to first order (`expected_n`) until the next global solve measures it.
+//! Between two global solves `Π + Σ energy dissipated − work` is constant. The events and the work are in the
+//! event log, and a whole branch is checked in
+//! `cycle::soundness`. Events are accounted for with the potential of their local problem while the rest of the contact keeps its loads; the response of the rest is known to first order (`expected_n`)
+//! until the next global solve measures it.
 
 use super::event_log::EventLog;
 
@@ -50,7 +51,8 @@ impl EnergyLedger {
         self.open = true;
     }
 
-    /// Work of the expected change of the load up to a mean penetration \[J\]; from there on the change is larger by `more` \[N\].
+    /// Work of the expected change of the load up to a mean penetration \[J\]; from there on the change is
+    /// larger by `more` \[N\].
     pub(super) fn expect_load(&mut self, mean_penetration: f64, more: f64) -> f64 {
         let work = self.expected_n * (mean_penetration - self.expected_at);
         self.expected_at = mean_penetration;

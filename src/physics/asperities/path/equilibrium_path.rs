@@ -32,14 +32,16 @@ pub(crate) struct EquilibriumPath {
     pub(super) energy: EnergyLedger,
     pub(super) steps: StepControl,
     pub(super) chatter: ChatterGuard,
-    /// Asperities with a transition that is due and waits for the path to continue: found again, it is not late.
+    /// Asperities with a transition that is due and waits for the path to continue: found again, it is not
+    /// late.
     pub(super) postponed: Vec<usize>,
     pub(super) log: EventLog,
     /// Load and area at the last global solve.
     pub(super) totals: Totals,
     /// Precision of the last global solve.
     pub(super) precision: Precision,
-    /// Sense of the path, 1 loading or −1 unloading, and its length scale, the mean jump-off penetration rounded down \[m\].
+    /// Sense of the path, 1 loading or −1 unloading, and its length scale, the mean jump-off penetration
+    /// rounded down \[m\].
     pub(super) frame: Frame,
     /// The state before the last increment.
     pub(super) checkpoint: Option<Box<Checkpoint>>,
@@ -135,13 +137,14 @@ impl EquilibriumPath {
         self.accuracy().pending() * self.frame.scale
     }
 
-    /// Distance of a free asperity from its jump-in beyond which it stays farther than the scale from it while the mean penetration changes by `way`; both
-    /// \[m\].
+    /// Distance of a free asperity from its jump-in beyond which it stays farther than the scale from it
+    /// while the mean penetration changes by `way`; both \[m\].
     pub(super) fn out_of_reach(&self, way: f64) -> f64 {
         self.numerics().events.penetration_rate * way.abs() + self.frame.scale
     }
 
-    /// Gathers the neighbourhood of a transition at a mean penetration \[m\] or where its contacts were known last.
+    /// Gathers the neighbourhood of a transition at a mean penetration \[m\] or where its contacts were known
+    /// last.
     pub(super) fn gather(&mut self, transition: &Transition, mean_penetration: Option<f64>) {
         let interval = self.numerics().solver.free_interval * self.solver.problem.rms_height_m;
         let within = Surroundings {
@@ -162,7 +165,8 @@ impl EquilibriumPath {
             self.steps.begin_attempt();
             let here = self.state().mean_penetration_m;
             let target = self.steps.target(here, bound);
-            let attempt = self.run_and_correct(target, bound).and_then(|()| self.check_numbers(checkpoint.events));
+            let attempt =
+                self.run_and_correct(target, bound).and_then(|()| self.check_numbers(checkpoint.events));
             let rejection = match attempt {
                 Ok(()) => {
                     if self.steps.accept(target) {
@@ -175,7 +179,8 @@ impl EquilibriumPath {
             };
             self.restore(&checkpoint);
             if !self.steps.halve(here) {
-                let relaxed = self.relax_globally(target).and_then(|()| self.check_numbers(checkpoint.events));
+                let relaxed =
+                    self.relax_globally(target).and_then(|()| self.check_numbers(checkpoint.events));
                 match relaxed {
                     Ok(()) => break,
                     Err(Rejection::Failed(error)) => return Err(error),
@@ -187,12 +192,17 @@ impl EquilibriumPath {
         Ok(())
     }
 
-    /// Runs the events before `target` and solves the global problem there; in between too, after events that move all of the contact.
+    /// Runs the events before `target` and solves the global problem there; in between too, after events that
+    /// move all of the contact.
     fn run_and_correct(&mut self, target: f64, bound: Option<f64>) -> Result<(), Rejection> {
         let (strict, precision) = (self.steps.is_strict(), self.precision_at(target, bound));
         while let Some(mean_penetration) = self.run_events(target)? {
             let there = mean_penetration == target;
-            self.correct(mean_penetration, Arrival::Jump, if there { precision } else { self.precision_between() })?;
+            self.correct(
+                mean_penetration,
+                Arrival::Jump,
+                if there { precision } else { self.precision_between() },
+            )?;
             if there {
                 return Ok(());
             }
@@ -200,21 +210,26 @@ impl EquilibriumPath {
         self.correct(target, if strict { Arrival::CheckedIncrement } else { Arrival::Increment }, precision)
     }
 
-    /// Precision where the state is not written down: that of the events, where local problems hold all contacts.
+    /// Precision where the state is not written down: that of the events, where local problems hold all
+    /// contacts.
     fn precision_between(&self) -> Precision {
         if self.problem().solves_whole() { Precision::Exact } else { Precision::Sufficient }
     }
 
-    /// Precision at the end of an increment: exact on a grid, where most states are written down, and at a bound.
+    /// Precision at the end of an increment: exact on a grid, where most states are written down, and at a
+    /// bound.
     fn precision_at(&self, target: f64, bound: Option<f64>) -> Precision {
-        let exact = bound == Some(target) || is_multiple(target, self.accuracy().exact_grid * self.problem().rms_height_m);
+        let exact = bound == Some(target)
+            || is_multiple(target, self.accuracy().exact_grid * self.problem().rms_height_m);
         if exact { Precision::Exact } else { self.precision_between() }
     }
 
     /// Rejects loads and energies that are not numbers.
     fn check_numbers(&self, events: usize) -> Result<(), Rejection> {
         let energy = |event: &Event| event.energy_lost_j + event.before.load_n + event.after.load_n;
-        if self.log.work_j.is_finite() && self.totals.load_n.is_finite() && self.log.events[events..].iter().map(energy).all(f64::is_finite)
+        if self.log.work_j.is_finite()
+            && self.totals.load_n.is_finite()
+            && self.log.events[events..].iter().map(energy).all(f64::is_finite)
         {
             return Ok(());
         }
@@ -223,7 +238,11 @@ impl EquilibriumPath {
     }
 
     /// Counts the trial of a transition, and ends an increment whose trials go on without end.
-    pub(super) fn count_trial(&mut self, mean_penetration_m: f64, asperity: usize) -> Result<(), PhysicsError> {
+    pub(super) fn count_trial(
+        &mut self,
+        mean_penetration_m: f64,
+        asperity: usize,
+    ) -> Result<(), PhysicsError> {
         let problem = &*self.problem();
         let limits = &problem.numerics.events;
         let most = limits.trials_per_asperity * (problem.len() + limits.trials_offset);

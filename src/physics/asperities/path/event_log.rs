@@ -63,7 +63,17 @@ impl EventLog {
         self.events.extend(moved.iter().enumerate().map(|(k, (change, status))| {
             let Transition { kind, asperity, .. } = *change;
             let (before, energy_lost_j) = if k == 0 { (before, energy) } else { (after, 0.0) };
-            Event { kind, asperity, status: *status, cause, mean_penetration_m, avalanche, before, after, energy_lost_j }
+            Event {
+                kind,
+                asperity,
+                status: *status,
+                cause,
+                mean_penetration_m,
+                avalanche,
+                before,
+                after,
+                energy_lost_j,
+            }
         }));
     }
 
@@ -76,11 +86,12 @@ impl EventLog {
 
     /// Cause of a relaxation whose first event has this `kind`: itself, or merging or splitting before it.
     ///
-    /// Merging and splitting exchange contacts at equal energy. They are recorded before the contact is in equilibrium
-    /// again, with the energy 0 if nothing moves at once. They cause the relaxations on the way to that equilibrium, up
-    /// to the first with an energy. This is mainly the difference between the potentials of the merged contact
-    /// and of its parts. Without this rule the energies of merging and splitting do not cancel: on one surface of
-    /// Δγ = 0.005 J/m² with ζ = 32, a jump that follows a splitting has fourteen times Θ.
+    /// Merging and splitting exchange contacts at equal energy. They are recorded before the contact is in
+    /// equilibrium again, with the energy 0 if nothing moves at once. They cause the relaxations on the way
+    /// to that equilibrium, up to the first with an energy. This is mainly the difference between the
+    /// potentials of the merged contact and of its parts. Without this rule the energies of merging and
+    /// splitting do not cancel: on one surface of Δγ = 0.005 J/m² with ζ = 32, a jump that follows a
+    /// splitting has fourteen times Θ.
     fn cause(&self, kind: EventKind) -> EventKind {
         let is_before = |event: &&Event| event.avalanche == self.avalanches && event.energy_lost_j == 0.0;
         let before = self.events.get(self.charged).filter(is_before).map(|event| [event.kind, event.cause]);
@@ -140,9 +151,12 @@ mod tests {
 
     #[test]
     fn law_a_cause_ends_with_its_avalanche_and_with_an_energy() {
-        let [split, uncover, jump] = [Transition::split(5), Transition::uncover(2, 3), Transition::jump_off(1)];
+        let [split, uncover, jump] =
+            [Transition::split(5), Transition::uncover(2, 3), Transition::jump_off(1)];
         let mut log = EventLog::default();
-        let record = |log: &mut EventLog, change| log.record(&[(change, SpotStatus::Free)], 0.0, [Totals::default(); 2], 0.0);
+        let record = |log: &mut EventLog, change| {
+            log.record(&[(change, SpotStatus::Free)], 0.0, [Totals::default(); 2], 0.0)
+        };
         for change in [split, jump, split] {
             log.begin_avalanche();
             record(&mut log, change);

@@ -1,5 +1,5 @@
-//! Events of an increment, in their order: predicted, located on the solution curve of their local problem, applied, and followed by their
-//! avalanche.
+//! Events of an increment, in their order: predicted, located on the solution curve of their local problem,
+//! applied, and followed by their avalanche.
 
 use super::avalanche::Avalanche;
 use super::conditions::Condition;
@@ -38,8 +38,9 @@ enum Outcome {
 }
 
 impl EquilibriumPath {
-    /// Finds and applies the events before `target` \[m\], in their order. Where one has changed more than local solves can propagate, its
-    /// mean penetration is returned: the global problem is to be solved there.
+    /// Finds and applies the events before `target` \[m\], in their order. Where one has changed more than
+    /// local solves can propagate, its mean penetration is returned: the global problem is to be solved
+    /// there.
     pub(super) fn run_events(&mut self, target: f64) -> Result<Option<f64>, Rejection> {
         let mut queue = self.expect_events(target);
         while let Some(at) = self.earliest(&queue) {
@@ -52,7 +53,9 @@ impl EquilibriumPath {
             };
             // Predictions for the touched asperities are replaced.
             let is_touched = |i: usize| touched.binary_search(&i).is_ok();
-            queue.retain(|event| !is_touched(event.transition.asperity) && !event.transition.by.is_some_and(is_touched));
+            queue.retain(|event| {
+                !is_touched(event.transition.asperity) && !event.transition.by.is_some_and(is_touched)
+            });
             for &i in &touched {
                 self.predictor.expect(&self.solver.problem, i, target, self.frame.sense, &mut queue);
             }
@@ -71,7 +74,9 @@ impl EquilibriumPath {
 
     /// Position of the earliest event in the queue.
     fn earliest(&self, queue: &[PredictedEvent]) -> Option<usize> {
-        let key = |event: &PredictedEvent| (event.mean_penetration * self.frame.sense, event.transition.asperity, event.transition.kind);
+        let key = |event: &PredictedEvent| {
+            (event.mean_penetration * self.frame.sense, event.transition.asperity, event.transition.kind)
+        };
         (0..queue.len()).min_by(|a, b| {
             let (u, v) = (key(&queue[*a]), key(&queue[*b]));
             u.0.total_cmp(&v.0).then(u.1.cmp(&v.1)).then(u.2.cmp(&v.2))
@@ -79,7 +84,12 @@ impl EquilibriumPath {
     }
 
     /// Locates and applies an event with its avalanche.
-    fn run_event(&mut self, event: PredictedEvent, target: f64, queue: &mut Vec<PredictedEvent>) -> Result<Outcome, Rejection> {
+    fn run_event(
+        &mut self,
+        event: PredictedEvent,
+        target: f64,
+        queue: &mut Vec<PredictedEvent>,
+    ) -> Result<Outcome, Rejection> {
         let transition = event.transition;
         if !self.chatter.admit(&transition, self.solver.problem.numerics.events.changes_per_asperity) {
             return Ok(Outcome::Absent);
@@ -94,7 +104,10 @@ impl EquilibriumPath {
             let Some(located) = self.locate(&event, target) else { return Ok(Outcome::Absent) };
             let mean_penetration = self.neighbourhood.local.mean_penetration;
             let tolerance = self.numerics().events.position_tolerance * self.problem().rms_height_m;
-            if queue.iter().any(|other| (mean_penetration - other.mean_penetration) * self.frame.sense > tolerance) {
+            if queue
+                .iter()
+                .any(|other| (mean_penetration - other.mean_penetration) * self.frame.sense > tolerance)
+            {
                 queue.push(PredictedEvent { mean_penetration, ..event });
                 return Ok(Outcome::Absent);
             }
@@ -104,20 +117,32 @@ impl EquilibriumPath {
         Ok(self.run_avalanche(avalanche)?.map_or(Outcome::Unpropagated, Outcome::Touched))
     }
 
-    /// Moves the local problem along its solution curve to an event, just before it; nothing if the event does not occur before `target`
-    /// \[m\].
+    /// Moves the local problem along its solution curve to an event, just before it; nothing if the event
+    /// does not occur before `target` \[m\].
     fn locate(&mut self, event: &PredictedEvent, target: f64) -> Option<Located> {
         self.neighbourhood.set_origin();
         match self.problem().condition(&event.transition, &self.predictor.state)? {
-            Condition::Penetration { asperity, value_m } => self.locate_penetration(asperity, value_m, event.mean_penetration, target),
+            Condition::Penetration { asperity, value_m } => {
+                self.locate_penetration(asperity, value_m, event.mean_penetration, target)
+            }
             Condition::Touching { pair: [i, by] } => self.locate_merging(i, by, target),
-            Condition::Shrinking { contact, value_m } => self.locate_radius(contact, value_m, RadiusChange::Shrinking, target),
-            Condition::Growing { contact, value_m } => self.locate_radius(contact, value_m, RadiusChange::Growing, target),
+            Condition::Shrinking { contact, value_m } => {
+                self.locate_radius(contact, value_m, RadiusChange::Shrinking, target)
+            }
+            Condition::Growing { contact, value_m } => {
+                self.locate_radius(contact, value_m, RadiusChange::Growing, target)
+            }
         }
     }
 
     /// Locates where the radius of a contact reaches `bound` \[m\], or a fold before that.
-    fn locate_radius(&mut self, spot: usize, bound: f64, change: RadiusChange, target: f64) -> Option<Located> {
+    fn locate_radius(
+        &mut self,
+        spot: usize,
+        bound: f64,
+        change: RadiusChange,
+        target: f64,
+    ) -> Option<Located> {
         let (problem, sense) = (&*self.problem(), self.frame.sense);
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         let at = local.find(spot)?;
@@ -128,14 +153,16 @@ impl EquilibriumPath {
         if is_there {
             return Some(Located::Point);
         }
-        match local.trace_curve(problem, CurveSearch { member: at, bound, target, path_sense: sense }, effort) {
+        match local.trace_curve(problem, CurveSearch { member: at, bound, target, path_sense: sense }, effort)
+        {
             Ok(CurveEnd::Fold) => Some(Located::Fold(at)),
             Ok(CurveEnd::Bound) if (local.mean_penetration - target) * sense <= 0.0 => Some(Located::Point),
             _ => None,
         }
     }
 
-    /// Locates where the penetration of an asperity out of contact reaches `bound` \[m\], near the mean penetration `predicted` \[m\].
+    /// Locates where the penetration of an asperity out of contact reaches
+    /// `bound` \[m\], near the mean penetration `predicted` \[m\].
     fn locate_penetration(&mut self, i: usize, bound: f64, predicted: f64, target: f64) -> Option<Located> {
         let (problem, sense) = (&*self.problem(), self.frame.sense);
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
@@ -148,8 +175,8 @@ impl EquilibriumPath {
             local.solve(problem, Hold::Penetration(watched, bound), effort).ok()?;
         }
         let way = (local.mean_penetration - start) * sense;
-        let inside =
-            way >= -problem.numerics.events.position_tolerance * problem.rms_height_m && (local.mean_penetration - target) * sense <= 0.0;
+        let inside = way >= -problem.numerics.events.position_tolerance * problem.rms_height_m
+            && (local.mean_penetration - target) * sense <= 0.0;
         inside.then_some(Located::Point)
     }
 
@@ -174,7 +201,9 @@ impl EquilibriumPath {
         let mut now = end;
         let (limits, touch) = (&problem.numerics.events, problem.numerics.events.merging_overlap);
         for _ in 0..limits.merging_trials {
-            if (0.0..=touch).contains(&now) || (high - low).abs() <= limits.position_tolerance * problem.rms_height_m {
+            if (0.0..=touch).contains(&now)
+                || (high - low).abs() <= limits.position_tolerance * problem.rms_height_m
+            {
                 break;
             }
             // The aim lies slightly beyond touching.
@@ -197,8 +226,13 @@ impl EquilibriumPath {
     /// Advances the predictor of the members to a located event, and counts the work.
     fn finish_location(&mut self, located: Located, transition: &Transition, avalanche: &mut Avalanche) {
         let fold = matches!(located, Located::Fold(_));
-        // Near the end of a branch the state is smooth in the radius; at the edge of a contact it is smooth in the mean penetration.
-        let curve = if fold || transition.ends_contact() { std::mem::take(&mut self.neighbourhood.local.way) } else { Vec::new() };
+        // Near the end of a branch the state is smooth in the radius; at the edge of a contact it is smooth
+        // in the mean penetration.
+        let curve = if fold || transition.ends_contact() {
+            std::mem::take(&mut self.neighbourhood.local.way)
+        } else {
+            Vec::new()
+        };
         self.propagate_curve(&curve, avalanche);
         // At a fold they are infinite.
         let rates = (!fold).then(|| self.neighbourhood.local.rates(&self.solver.problem).0);

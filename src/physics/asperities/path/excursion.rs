@@ -36,19 +36,25 @@ impl EquilibriumPath {
         let mut before = (checkpoint.state().mean_penetration_m, checkpoint.totals.load_n);
         for segment in &self.log.segments[checkpoint.segments..] {
             if segment.load >= load {
-                return Some(Crossing { ends: [before.0, segment.mean_penetration], excess: [before.1 - load, segment.load - load] });
+                return Some(Crossing {
+                    ends: [before.0, segment.mean_penetration],
+                    excess: [before.1 - load, segment.load - load],
+                });
             }
             before = (segment.mean_penetration, segment.load);
         }
         None
     }
 
-    /// The first state of the last increment with a load \[N\], on an excursion; none where only the predictor had it.
+    /// The first state of the last increment with a load \[N\], on an excursion; none where only the
+    /// predictor had it.
     pub(crate) fn turning(&mut self, load: f64) -> Result<Option<Self>, PhysicsError> {
         if self.checkpoint.is_none() && self.totals.load_n >= load {
             return self.excursion(self.state().mean_penetration_m).map(Some);
         }
-        let Some(Crossing { ends: [mut low, mut high], excess: [under, over] }) = self.crossing(load) else { return Ok(None) };
+        let Some(Crossing { ends: [mut low, mut high], excess: [under, over] }) = self.crossing(load) else {
+            return Ok(None);
+        };
         let tolerance = self.numerics().steps.load_tolerance;
         let mut ends = Illinois::new(under, over);
         for _ in 0..100 {
@@ -75,8 +81,9 @@ impl EquilibriumPath {
         Ok((found.totals.load_n >= load - tolerance * load.abs()).then_some(found))
     }
 
-    /// The state of the last increment at a mean penetration or soon after it with a load of at least `load` \[N\]: an excursion may meet a
-    /// jump a little later than the increment did. Without one, the state with the largest load.
+    /// The state of the last increment at a mean penetration or soon after it with a load of at least `load`
+    /// \[N\]: an excursion may meet a jump a little later than the increment did. Without one, the state with
+    /// the largest load.
     fn reaching(&mut self, mut at: f64, load: f64) -> Result<Self, PhysicsError> {
         let (end, sense) = (self.state().mean_penetration_m, self.frame.sense);
         let mut further = self.numerics().steps.load_tolerance * self.problem().rms_height_m;

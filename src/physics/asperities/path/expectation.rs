@@ -15,7 +15,14 @@ pub(crate) struct PredictedEvent {
 
 impl Predictor {
     /// Adds the merging that is expected of contact `j` before `target`.
-    fn expect_merging(&self, problem: &Problem, j: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
+    fn expect_merging(
+        &self,
+        problem: &Problem,
+        j: usize,
+        target: f64,
+        sign: f64,
+        due: &mut Vec<PredictedEvent>,
+    ) {
         let (here, there) = (self.state.radius[j], self.radius(problem, j, target));
         let mut found = Vec::new();
         self.pairs(problem, j, here.max(there), |i, _| found.push(i));
@@ -29,13 +36,23 @@ impl Predictor {
             let ends = start + 1.1 * (end - start);
             if (start >= 0.0 || ends >= 0.0) && !due.iter().any(|event| event.transition == transition) {
                 let share = if start >= 0.0 { 0.0 } else { (start / (start - end)).clamp(0.0, 1.0) };
-                due.push(PredictedEvent { mean_penetration: at + sign * share * ((target - at) * sign).max(0.0), transition });
+                due.push(PredictedEvent {
+                    mean_penetration: at + sign * share * ((target - at) * sign).max(0.0),
+                    transition,
+                });
             }
         }
     }
 
     /// Adds the events expected of asperity `i` before `target`, in the sense `sign`.
-    pub(crate) fn expect(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
+    pub(crate) fn expect(
+        &self,
+        problem: &Problem,
+        i: usize,
+        target: f64,
+        sign: f64,
+        due: &mut Vec<PredictedEvent>,
+    ) {
         match self.state.status[i] {
             Status::Free => self.expect_jump_in(problem, i, target, sign, due),
             Status::Contact => {
@@ -48,7 +65,14 @@ impl Predictor {
         }
     }
 
-    fn expect_jump_in(&self, problem: &Problem, i: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
+    fn expect_jump_in(
+        &self,
+        problem: &Problem,
+        i: usize,
+        target: f64,
+        sign: f64,
+        due: &mut Vec<PredictedEvent>,
+    ) {
         let trace = self.traces[i];
         let Some(penetration) = trace.penetration().filter(|_| !self.state.barred[i]) else { return };
         let left = problem.jump_in[i] - penetration;
@@ -57,11 +81,21 @@ impl Predictor {
         let left = (target - trace.at) * sign;
         // A curved way may end a little earlier than a straight one.
         if (left > 0.0 && speed > 0.0 || way == 0.0) && way <= 1.1 * left {
-            due.push(PredictedEvent { mean_penetration: trace.at + sign * way, transition: Transition::jump_in(i) });
+            due.push(PredictedEvent {
+                mean_penetration: trace.at + sign * way,
+                transition: Transition::jump_in(i),
+            });
         }
     }
 
-    fn expect_of_spot(&self, problem: &Problem, j: usize, target: f64, sign: f64, due: &mut Vec<PredictedEvent>) {
+    fn expect_of_spot(
+        &self,
+        problem: &Problem,
+        j: usize,
+        target: f64,
+        sign: f64,
+        due: &mut Vec<PredictedEvent>,
+    ) {
         let (trace, asperity, a) = (self.traces[j], &problem.asperities[j], self.state.radius[j]);
         let penetration = trace.penetration_or_nan();
         let speed = sign * trace.rate;
@@ -76,7 +110,10 @@ impl Predictor {
             }
             let uncover = |i: usize| Transition::uncover(i, j);
             for transition in std::iter::once(Transition::split(j)).chain(self.covered_by(j).map(uncover)) {
-                let Some(Condition::Shrinking { value_m, .. }) = problem.condition(&transition, &self.state) else { continue };
+                let Some(Condition::Shrinking { value_m, .. }) = problem.condition(&transition, &self.state)
+                else {
+                    continue;
+                };
                 let way = (penetration - asperity.penetration(value_m)) / -speed;
                 if a <= value_m || way <= 1.1 * left {
                     offer(if a <= value_m { 0.0 } else { way }, transition);
@@ -91,7 +128,10 @@ impl Predictor {
                 let open = problem.can_be_covered(&self.state, i) && self.state.radius[i] < r;
                 // Two contacts that grow towards one another's centres have a fold before they reach them.
                 if open && r >= a && (reach >= r || self.state.radius[i] > twins * r) {
-                    offer(((asperity.penetration(r) - penetration) / speed).min(left), Transition::cover(i, j));
+                    offer(
+                        ((asperity.penetration(r) - penetration) / speed).min(left),
+                        Transition::cover(i, j),
+                    );
                 }
             });
         }

@@ -19,9 +19,14 @@ enum Members {
 }
 
 impl EquilibriumPath {
-    /// Replaces two contacts of the local problem by one of the same area and load, which is in equilibrium there; the transition names it. Nothing else
-    /// changes: the local problem is the one `before` any response.
-    pub(super) fn merge(&mut self, transition: Transition, before: &mut Before) -> Result<Transition, PhysicsError> {
+    /// Replaces two contacts of the local problem by one of the same area and load, which is in equilibrium
+    /// there; the transition names it. Nothing else changes: the local problem is the one `before` any
+    /// response.
+    pub(super) fn merge(
+        &mut self,
+        transition: Transition,
+        before: &mut Before,
+    ) -> Result<Transition, PhysicsError> {
         let problem = self.problem();
         let pair = [transition.by.unwrap_or(transition.asperity), transition.asperity];
         let mean_penetration = self.neighbourhood.local.mean_penetration;
@@ -64,31 +69,38 @@ impl EquilibriumPath {
         Ok(Transition::merged(number))
     }
 
-    /// Replaces a merged contact of the local problem by its parts, with its present area; the local problem is the one `before` any response.
+    /// Replaces a merged contact of the local problem by its parts, with its present area; the local problem
+    /// is the one `before` any response.
     pub(super) fn split(&mut self, number: usize, before: &mut Before) {
         let mean_penetration = self.neighbourhood.local.mean_penetration;
         let Some(at) = self.neighbourhood.local.find(number) else { return };
         let contacts: Vec<(usize, f64)> = self.contacts_without(&[number], mean_penetration);
         let problem = self.problem();
         let merged = self.predictor.state.merged[number - problem.summits()];
-        let (radius, drift) = (self.neighbourhood.local.radius[at], self.neighbourhood.local.members[at].drift);
+        let (radius, drift) =
+            (self.neighbourhood.local.radius[at], self.neighbourhood.local.members[at].drift);
         let present = merged.scaled(radius / merged.contact_radius_m());
         let difference = problem.difference_field(number, &merged, self.state());
         // Beyond the radius at which it merged the fields of its parts differ by something else from its own.
-        let has_shrunk = radius < (1.0 - 10.0 * problem.numerics.events.radius_resolution) * merged.contact_radius_m();
+        let has_shrunk =
+            radius < (1.0 - 10.0 * problem.numerics.events.radius_resolution) * merged.contact_radius_m();
         let now = has_shrunk.then(|| problem.difference_field(number, &present, self.state()));
         let outside = self.solver.displacements(&contacts, &[merged.parts[0], merged.parts[1], number]);
         let displaced = self.displaced(number, &present, outside);
-        let exchanged = problem.exchange_j(number, &present, &contacts, now.as_ref().unwrap_or(&difference), displaced);
+        let exchanged =
+            problem.exchange_j(number, &present, &contacts, now.as_ref().unwrap_or(&difference), displaced);
         drop(problem);
         Arc::make_mut(&mut self.solver.problem).lower(&difference, -1.0);
-        let excess: Vec<f64> = now.iter().flatten().zip(&difference).map(|(begins, ends)| ends - begins).collect();
+        let excess: Vec<f64> =
+            now.iter().flatten().zip(&difference).map(|(begins, ends)| ends - begins).collect();
         let gained = exchanged - merged.offset_j + self.end_field(&excess, Members::Settled);
         let problem = &*self.problem();
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
         local.remove(number);
         local.evaluate(problem, effort);
-        for (part, (displacement, radius)) in merged.parts.into_iter().zip(outside.into_iter().zip(present.radii_m)) {
+        for (part, (displacement, radius)) in
+            merged.parts.into_iter().zip(outside.into_iter().zip(present.radii_m))
+        {
             let place = local.place(problem, part, displacement, drift, effort);
             local.insert(place, radius);
             self.pending.set_applied(part);
@@ -100,7 +112,8 @@ impl EquilibriumPath {
         *before = self.exchanged(before, gained);
     }
 
-    /// Displacements \[m\] at two contacts, by one another and by all images, and at the one in their place, by its images, with those by the `outside`.
+    /// Displacements \[m\] at two contacts, by one another and by all images, and at the one in their place,
+    /// by its images, with those by the `outside`.
     fn displaced(&mut self, number: usize, merged: &Merged, outside: [f64; 3]) -> [f64; 3] {
         let pair = [0, 1].map(|k| (merged.parts[k], merged.radii_m[k]));
         let [first, second] = self.solver.displacements(&pair, &merged.parts);
@@ -108,7 +121,8 @@ impl EquilibriumPath {
         [outside[0] + first, outside[1] + second, outside[2] + own]
     }
 
-    /// The local problem after an exchange of contacts that has gained energy \[J\] and changed nothing elsewhere.
+    /// The local problem after an exchange of contacts that has gained energy \[J\] and changed nothing
+    /// elsewhere.
     fn exchanged(&mut self, before: &Before, gained_j: f64) -> Before {
         let problem = &*self.problem();
         self.neighbourhood.local.evaluate(problem, &mut self.solver.effort);
@@ -122,13 +136,16 @@ impl EquilibriumPath {
         all.into_iter().filter(|(i, _)| !some.contains(i)).collect()
     }
 
-    /// Frees the parts of a merged contact that has left contact, and blocks them from re-entry; they are returned, with the energy that the loads of
-    /// the other contacts gain as its difference field ends \[J\].
+    /// Frees the parts of a merged contact that has left contact, and blocks them from re-entry; they are
+    /// returned, with the energy that the loads of the other contacts gain as its difference field ends
+    /// \[J\].
     pub(super) fn free_parts(&mut self, number: usize) -> (Vec<usize>, f64) {
         let summits = self.problem().summits();
         let (mut freed, mut gained_j, mut left) = (Vec::new(), 0.0, vec![number]);
         while let Some(into) = left.pop() {
-            let Some(merged) = into.checked_sub(summits).map(|k| self.predictor.state.merged[k]) else { continue };
+            let Some(merged) = into.checked_sub(summits).map(|k| self.predictor.state.merged[k]) else {
+                continue;
+            };
             gained_j += self.end_difference(into, &merged);
             for part in merged.parts {
                 if self.predictor.state.status[part] == (Status::Merged { into }) {
@@ -142,8 +159,8 @@ impl EquilibriumPath {
         (freed, gained_j)
     }
 
-    /// Ends the difference field of a merged contact that has left contact: all contacts have that as a pending displacement. The energy that their
-    /// loads gain is returned \[J\].
+    /// Ends the difference field of a merged contact that has left contact: all contacts have that as a
+    /// pending displacement. The energy that their loads gain is returned \[J\].
     fn end_difference(&mut self, number: usize, merged: &Merged) -> f64 {
         let problem = self.problem();
         let difference = problem.difference_field(number, merged, self.state());
@@ -152,11 +169,14 @@ impl EquilibriumPath {
         self.end_field(&difference, Members::Pending)
     }
 
-    /// Ends a field, by asperity: contacts have that as a pending displacement. The energy that their loads gain is returned \[J\].
+    /// Ends a field, by asperity: contacts have that as a pending displacement. The energy that their loads
+    /// gain is returned \[J\].
     fn end_field(&mut self, field: &[f64], members: Members) -> f64 {
         let (problem, limit) = (self.problem(), self.pending_limit());
         let mut gained_j = 0.0;
-        for (i, displacement) in field.iter().copied().enumerate().filter(|(_, displacement)| *displacement != 0.0) {
+        for (i, displacement) in
+            field.iter().copied().enumerate().filter(|(_, displacement)| *displacement != 0.0)
+        {
             if self.predictor.state.status[i] == Status::Contact {
                 if members == Members::Pending || self.neighbourhood.local.find(i).is_none() {
                     gained_j += displacement * problem.asperities[i].load(self.predictor.state.radius[i]);

@@ -1,7 +1,8 @@
 //! The path of equilibria under displacement control, from event to event.
 //!
-//! An event-driven predictor–corrector continuation in the mean penetration Δ. Local problems resolve the events, in overlapping subdomains; their effect is
-//! propagated to the rest of the contact, the largest pending displacement first (Gauss–Southwell); a global Newton–Krylov solve corrects the result.
+//! An event-driven predictor–corrector continuation in the mean penetration Δ. Local problems resolve the
+//! events, in overlapping subdomains; their effect is propagated to the rest of the contact, the largest
+//! pending displacement first (Gauss–Southwell); a global Newton–Krylov solve corrects the result.
 //!
 //! ```text
 //!  F │                 load of the contact          ●  global solve at the end of an increment
@@ -55,12 +56,15 @@
 //! | [`event_log::EventLog`] | events, work, and segments of the load |
 //! | [`checkpoint::Checkpoint`] | a path at a global solve, to go back to |
 //!
-//! An event kind is added as a line of [`crate::asperities::contact::transition`] (name, status after it, inverse) and
-//! one of `conditions`: the quantity and its limit. Its lateness, its due state and its place on the solution
-//! curve follow from the condition. The compiler then requires the change of the local problem (`apply`), the
-//! status after it (`propagation`) and its inverse (`EventKind::reversed`). It does not require:
+//! An event kind is added as a line of
+//! [`crate::asperities::contact::transition`] (name, status after it, inverse) and one of `conditions`: the
+//! quantity and its limit. Its lateness, its due state and its place on the solution curve follow from the
+//! condition. The compiler then requires the change of the local problem
+//! (`apply`), the status after it (`propagation`) and its inverse (`EventKind::reversed`). It does not
+//! require:
 //!
-//! - the asperities for which the event is looked for: `triggers`, `expectation`, and `overtaken` during a relaxation;
+//! - the asperities for which the event is looked for: `triggers`, `expectation`, and `overtaken` during a
+//!   relaxation;
 //! - pairs of kinds that undo each other: `Transition::returns`;
 //! - the offset of the potential if a load law changes: `Problem::self_potential`;
 //! - the columns that count events: `schema::avalanches` and `schema::run`.

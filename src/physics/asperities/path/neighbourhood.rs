@@ -1,7 +1,8 @@
 //! Local problem around an event, and the shell of asperities next to it.
 //!
-//! The contacts of the local problem are solved together, with the displacement by all others to first order in the mean penetration.
-//! Asperities of the shell receive the change of the field by the event: free ones that may come near jump-in at once, contacts as a pending displacement.
+//! The contacts of the local problem are solved together, with the displacement by all others to first order
+//! in the mean penetration. Asperities of the shell receive the change of the field by the event: free ones
+//! that may come near jump-in at once, contacts as a pending displacement.
 
 use super::pending::PendingField;
 use super::predictor::Predictor;
@@ -40,7 +41,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) sense: f64,
     /// Length scale \[m\].
     pub(super) scale: f64,
-    /// Distance from jump-in within which free asperities take the change of the field \[m\]: farther ones are evaluated before they come near.
+    /// Distance from jump-in within which free asperities take the change of the field \[m\]: farther ones
+    /// are evaluated before they come near.
     pub(super) displaced: f64,
 }
 
@@ -53,7 +55,8 @@ struct Selection {
 }
 
 impl Neighbourhood {
-    /// Gathers the contacts nearest to a transition, at a mean penetration \[m\] or where they were known last.
+    /// Gathers the contacts nearest to a transition, at a mean penetration \[m\] or where they were known
+    /// last.
     pub(super) fn gather(
         &mut self,
         within: &Surroundings<'_>,
@@ -75,9 +78,14 @@ impl Neighbourhood {
         let mean_penetration = mean_penetration.unwrap_or_else(|| {
             let asperity = transition.kind.begins_contact().then_some(transition.asperity);
             let known = members.iter().copied().chain(asperity).map(|i| traces[i].at);
-            known.max_by(|u, v| (u * sense).total_cmp(&(v * sense))).unwrap_or(predictor.state.mean_penetration_m)
+            known
+                .max_by(|u, v| (u * sense).total_cmp(&(v * sense)))
+                .unwrap_or(predictor.state.mean_penetration_m)
         });
-        let members: Vec<_> = members.into_iter().map(|i| (i, traces[i], predictor.radius(problem, i, mean_penetration))).collect();
+        let members: Vec<_> = members
+            .into_iter()
+            .map(|i| (i, traces[i], predictor.radius(problem, i, mean_penetration)))
+            .collect();
         let watched: Vec<_> = watched.into_iter().map(|i| (i, traces[i])).collect();
         let extent = Extent::of(members.len(), predictor.state.contacts.len());
         self.local.gather(problem, &members, &watched, mean_penetration, extent, effort);
@@ -101,13 +109,16 @@ impl Surroundings<'_> {
         let limits = &problem.numerics.events;
         let most = if alone { 1 } else { limits.local_contacts };
         let span = limits.jump_in_distance * self.scale;
-        let near_jump_in = |i: &usize| state.status[*i] == Status::Free && traces[*i].exceeds(problem.jump_in[*i] - span);
+        let near_jump_in =
+            |i: &usize| state.status[*i] == Status::Free && traces[*i].exceeds(problem.jump_in[*i] - span);
         if state.contacts.len() <= most {
             let watched = (0..problem.len()).filter(near_jump_in).collect();
             return Selection { members: state.contacts.clone(), watched, shell: Vec::new(), reach: 0.0 };
         }
         let count = most.saturating_mul(limits.shell_ratio);
-        let mut near = problem.neighbours.nearest(place, count, state.contacts.len(), |i| state.status[i] == Status::Contact);
+        let mut near = problem
+            .neighbours
+            .nearest(place, count, state.contacts.len(), |i| state.status[i] == Status::Contact);
         let reach = near.iter().fold(0.0f64, |reach, (r, _)| reach.max(*r));
         let inner = near.select_nth_unstable_by(most - 1, nearer).1.0;
         let mut members: Vec<usize> = near[..most].iter().map(|(_, i)| *i).collect();

@@ -1,8 +1,9 @@
 //! Displacements of contacts by events that are not yet in their predictors.
 //!
-//! An event changes the field everywhere: next to it by a change that is known exactly, far from it by that of a point load. Free asperities have no
-//! response, so the change is entered into their predictors. Contacts have it as a pending displacement: a local solve applies what its members have
-//! pending, and a global solve accounts for all of it.
+//! An event changes the field everywhere: next to it by a change that is known exactly, far from it by that
+//! of a point load. Free asperities have no response, so the change is entered into their predictors.
+//! Contacts have it as a pending displacement: a local solve applies what its members have pending, and a
+//! global solve accounts for all of it.
 
 use crate::asperities::contact::Status;
 
@@ -73,6 +74,9 @@ impl PendingField {
     pub(super) fn worst(&mut self, status: &[Status], limit: f64) -> Option<usize> {
         let values = &self.values;
         self.over_limit.retain(|i| status[*i] == Status::Contact && values[*i].abs() > limit);
-        self.over_limit.iter().copied().max_by(|i, j| values[*i].abs().total_cmp(&values[*j].abs()).then(j.cmp(i)))
+        self.over_limit
+            .iter()
+            .copied()
+            .max_by(|i, j| values[*i].abs().total_cmp(&values[*j].abs()).then(j.cmp(i)))
     }
 }

@@ -1,8 +1,8 @@
 //! Linear predictors: the contact between two global solves.
 //!
-//! The penetration of a contact is nearly linear in the mean penetration, up to the end of its branch; its radius is not. Each asperity has
-//! a [`PenetrationTrace`] from the last global solve, or from the last event next to it. Its state at a later mean penetration follows from
-//! there.
+//! The penetration of a contact is nearly linear in the mean penetration, up to the end of its branch; its
+//! radius is not. Each asperity has a [`PenetrationTrace`] from the last global solve, or from the last event
+//! next to it. Its state at a later mean penetration follows from there.
 
 use crate::asperities::contact::merged_spot::{TouchingPairs, pair_of};
 use crate::asperities::contact::problem::Problem;
@@ -115,19 +115,23 @@ impl Predictor {
         self.traces[i].bounded_speed(&problem.asperities[i], self.state.radius[i])
     }
 
-    /// `dF/dΔ` of a contact \[N/m\], at most that of a flat punch of three times its size: it is infinite at the end of the branch, over a
-    /// short way.
+    /// `dF/dΔ` of a contact \[N/m\], at most that of a flat punch of three times its size: it is infinite at
+    /// the end of the branch, over a short way.
     pub(crate) fn load_rate(&self, problem: &Problem, i: usize) -> f64 {
         let (asperity, a) = (&problem.asperities[i], self.state.radius[i]);
         let most = 6.0 * problem.material.contact_modulus_pa * a;
         (asperity.load_slope(a) * self.radius_rate(problem, i)).clamp(-most, most)
     }
 
-    /// Predicted contact radius at a mean penetration \[m\]. At the predictor's own it may lie beyond the end of the branch, where the
-    /// penetration has another radius.
+    /// Predicted contact radius at a mean penetration \[m\]. At the predictor's own it may lie beyond the end
+    /// of the branch, where the penetration has another radius.
     pub(crate) fn radius(&self, problem: &Problem, i: usize, mean_penetration: f64) -> f64 {
         let trace = self.traces[i];
-        if trace.at == mean_penetration { self.state.radius[i] } else { trace.radius_ahead(&problem.asperities[i], mean_penetration) }
+        if trace.at == mean_penetration {
+            self.state.radius[i]
+        } else {
+            trace.radius_ahead(&problem.asperities[i], mean_penetration)
+        }
     }
 
     /// Predicted contact radii at a mean penetration \[m\].
@@ -136,7 +140,10 @@ impl Predictor {
         for contacts in self.state.contacts.chunks(LANES) {
             // Lanes beyond the last contact repeat it.
             let lanes: [usize; LANES] = std::array::from_fn(|lane| contacts[lane.min(contacts.len() - 1)]);
-            let ahead = Asperity::radii_ahead(lanes.map(|i| &problem.asperities[i]), lanes.map(|i| self.traces[i].ahead(mean_penetration)));
+            let ahead = Asperity::radii_ahead(
+                lanes.map(|i| &problem.asperities[i]),
+                lanes.map(|i| self.traces[i].ahead(mean_penetration)),
+            );
             let known = |i: usize| (self.traces[i].at == mean_penetration).then_some(self.state.radius[i]);
             radii.extend(contacts.iter().zip(ahead).map(|(&i, ahead)| (i, known(i).unwrap_or(ahead))));
         }
@@ -155,10 +162,17 @@ impl Predictor {
 
     /// Load and area of a contact at its predictor, with their derivatives.
     fn share(&self, problem: &Problem, i: usize) -> Sums {
-        let (asperity, a, speed) = (&problem.asperities[i], self.state.radius[i], self.radius_rate(problem, i));
+        let (asperity, a, speed) =
+            (&problem.asperities[i], self.state.radius[i], self.radius_rate(problem, i));
         let load_rate = self.load_rate(problem, i);
         let turn = 2.0 * std::f64::consts::PI * a;
-        Sums { at: self.traces[i].at, load: asperity.load(a), load_rate, area: 0.5 * turn * a, area_rate: turn * speed }
+        Sums {
+            at: self.traces[i].at,
+            load: asperity.load(a),
+            load_rate,
+            area: 0.5 * turn * a,
+            area_rate: turn * speed,
+        }
     }
 
     /// Predicted load and area at a mean penetration.
@@ -195,7 +209,12 @@ impl Predictor {
 
     /// Sets load and area before any predictor is known.
     pub(crate) fn expect_totals(&mut self, totals: Totals) {
-        self.sums = Sums { at: self.state.mean_penetration_m, load: totals.load_n, area: totals.area_m2, ..Sums::default() };
+        self.sums = Sums {
+            at: self.state.mean_penetration_m,
+            load: totals.load_n,
+            area: totals.area_m2,
+            ..Sums::default()
+        };
     }
 
     /// Recomputes the sums when all predictors are at one mean penetration.
@@ -223,15 +242,19 @@ impl Predictor {
     pub(crate) fn forget_parted(&mut self, problem: &Problem) {
         let state = &self.state;
         let is_part = |i: usize| matches!(state.status[i], Status::Merged { .. });
-        let overlaps = |i: usize, j: usize| problem.meeting([i, j], [state.radius[i], state.radius[j]]) >= 0.0;
+        let overlaps =
+            |i: usize, j: usize| problem.meeting([i, j], [state.radius[i], state.radius[j]]) >= 0.0;
         self.parted.retain(|(i, j)| is_part(*i) || is_part(*j) || overlaps(*i, *j));
     }
 
-    /// A contact that has become smaller by merging does not split at once: its radius of release is at most its radius, to rounding.
+    /// A contact that has become smaller by merging does not split at once: its radius of release is at most
+    /// its radius, to rounding.
     pub(crate) fn keep_merged(&mut self, problem: &Problem, number: usize) {
-        let (radius, merged) = (self.state.radius[number], &mut self.state.merged[number - problem.summits()]);
+        let (radius, merged) =
+            (self.state.radius[number], &mut self.state.merged[number - problem.summits()]);
         if radius > 0.0 {
-            merged.release_m = merged.release_m.min((1.0 - problem.numerics.events.radius_resolution) * radius);
+            merged.release_m =
+                merged.release_m.min((1.0 - problem.numerics.events.radius_resolution) * radius);
         }
     }
 
@@ -250,7 +273,8 @@ impl Predictor {
         });
     }
 
-    /// Calls `visit(i, distance)` for the contacts that would touch asperity `j` if it had the radius `reach` \[m\] and they grew by a fifth.
+    /// Calls `visit(i, distance)` for the contacts that would touch asperity `j` if it had the radius `reach`
+    /// \[m\] and they grew by a fifth.
     pub(crate) fn near(&self, problem: &Problem, j: usize, reach: f64, mut visit: impl FnMut(usize, f64)) {
         let (radius, growth) = (&self.state.radius, problem.numerics.events.neighbour_growth);
         let mut offer = |i: usize, r: f64| {

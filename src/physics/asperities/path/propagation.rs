@@ -1,10 +1,11 @@
 //! Effects of a change of a local problem: status of its members, energy of the event, and propagation to the
 //! rest of the contact.
 //!
-//! A local problem changes the field around it. Free asperities of its shell take the change at once. Contacts have it as a pending
-//! displacement until they are members of a local problem, or until the global solve; a sequence of local solves continues while a pending
-//! displacement exceeds the limit. The load with which they will respond is counted before, to first order: by reciprocity it is the effect
-//! of the rest of the contact on the loads of the members.
+//! A local problem changes the field around it. Free asperities of its shell take the change at once.
+//! Contacts have it as a pending displacement until they are members of a local problem, or until the global
+//! solve; a sequence of local solves continues while a pending displacement exceeds the limit. The load with
+//! which they will respond is counted before, to first order: by reciprocity it is the effect of the rest of
+//! the contact on the loads of the members.
 
 use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
@@ -51,14 +52,23 @@ impl EquilibriumPath {
         self.pending.worst(&self.predictor.state.status, limit)
     }
 
-    /// Applies the pending displacements of the members of the neighbourhood of a transition, and solves it. Contacts that leave or are
-    /// absorbed by that are transitions of the avalanche.
-    pub(super) fn apply_pending(&mut self, transition: &Transition, avalanche: &mut Avalanche) -> Result<(), Rejection> {
+    /// Applies the pending displacements of the members of the neighbourhood of a transition, and solves it.
+    /// Contacts that leave or are absorbed by that are transitions of the avalanche.
+    pub(super) fn apply_pending(
+        &mut self,
+        transition: &Transition,
+        avalanche: &mut Avalanche,
+    ) -> Result<(), Rejection> {
         let (before, start, solved) = self.solve_pending();
         let applied = if solved {
             Vec::new()
         } else {
-            self.neighbourhood.local.radius.iter_mut().zip(&start).for_each(|(radius, from)| *radius = from.radius);
+            self.neighbourhood
+                .local
+                .radius
+                .iter_mut()
+                .zip(&start)
+                .for_each(|(radius, from)| *radius = from.radius);
             self.relax_or_snap(transition.asperity)?
         };
         let energy = self.settle_pending(&before, start);
@@ -69,7 +79,8 @@ impl EquilibriumPath {
         Ok(())
     }
 
-    /// Solves the local problem with the pending displacements applied; false if it has no stable equilibrium nearby.
+    /// Solves the local problem with the pending displacements applied; false if it has no stable equilibrium
+    /// nearby.
     fn solve_pending(&mut self) -> (Before, Vec<Pending>, bool) {
         let problem = &*self.problem();
         self.advance_members(&[], None);
@@ -87,22 +98,26 @@ impl EquilibriumPath {
                 displacement: *displacement,
             })
             .collect();
-        let solved = near.local.solve(problem, Hold::MeanPenetration, &mut self.solver.effort).is_ok() && near.local.rates(problem).1;
+        let solved = near.local.solve(problem, Hold::MeanPenetration, &mut self.solver.effort).is_ok()
+            && near.local.rates(problem).1;
         (before, start, solved)
     }
 
     /// Relaxes the local problem: without a change of status the transition is a snap of `leader`.
     pub(super) fn relax_or_snap(&mut self, leader: usize) -> Result<Vec<Transition>, Rejection> {
-        let mut applied = self.neighbourhood.local.relax(&self.solver.problem, None, &mut self.solver.effort)?;
+        let mut applied =
+            self.neighbourhood.local.relax(&self.solver.problem, None, &mut self.solver.effort)?;
         if applied.is_empty() {
             applied.push(Transition::snap(leader));
         }
         Ok(applied)
     }
 
-    /// Marks the pending displacements as applied; the energy that the local problem has lost beyond their work is returned \[J\].
+    /// Marks the pending displacements as applied; the energy that the local problem has lost beyond their
+    /// work is returned \[J\].
     ///
-    /// The event that caused them was charged as if the loads here had not changed, so the work of these loads is not part of the energy.
+    /// The event that caused them was charged as if the loads here had not changed, so the work of these
+    /// loads is not part of the energy.
     fn settle_pending(&mut self, before: &Before, start: Vec<Pending>) -> f64 {
         let mut energy = before.potential - self.neighbourhood.local.totals(&self.problem()).1;
         let mut expected = 0.0;
@@ -122,11 +137,24 @@ impl EquilibriumPath {
         let totals = self.predictor.totals(local.mean_penetration);
         self.log.pass(local.mean_penetration, totals.load_n);
         let (load, potential) = local.totals(problem);
-        Before { totals, potential, load, members: local.reference_states(), reciprocal_load: local.reciprocal_load_rate(problem) }
+        Before {
+            totals,
+            potential,
+            load,
+            members: local.reference_states(),
+            reciprocal_load: local.reciprocal_load_rate(problem),
+        }
     }
 
-    /// Updates the predictor after the local problem has changed, and records the transitions with the energy that it has lost \[J\].
-    pub(super) fn finish(&mut self, before: &Before, applied: Vec<Transition>, energy: f64, avalanche: &mut Avalanche) {
+    /// Updates the predictor after the local problem has changed, and records the transitions with the energy
+    /// that it has lost \[J\].
+    pub(super) fn finish(
+        &mut self,
+        before: &Before,
+        applied: Vec<Transition>,
+        energy: f64,
+        avalanche: &mut Avalanche,
+    ) {
         let problem = &*self.problem();
         let near = &self.neighbourhood;
         let mean_penetration = near.local.mean_penetration;
@@ -163,7 +191,8 @@ impl EquilibriumPath {
         }
     }
 
-    /// Enters the status after a transition into the predictor; the energy that it gives to other contacts is returned \[J\].
+    /// Enters the status after a transition into the predictor; the energy that it gives to other contacts is
+    /// returned \[J\].
     fn enter(&mut self, transition: &Transition, avalanche: &mut Avalanche) -> f64 {
         let problem = &*self.problem();
         let i = transition.asperity;
@@ -194,7 +223,15 @@ impl EquilibriumPath {
                 avalanche.open.extend(parts);
                 return gained_j;
             }
-            (EventKind::JumpIn | EventKind::JumpOff | EventKind::Cover | EventKind::Uncover | EventKind::Merge | EventKind::Split, _) => {
+            (
+                EventKind::JumpIn
+                | EventKind::JumpOff
+                | EventKind::Cover
+                | EventKind::Uncover
+                | EventKind::Merge
+                | EventKind::Split,
+                _,
+            ) => {
                 self.enter_status(i, transition.status(problem));
             }
         }
@@ -203,7 +240,10 @@ impl EquilibriumPath {
 
     /// Enters a status into the predictor.
     fn enter_status(&mut self, i: usize, now: Status) {
-        if self.predictor.state.status[i] == Status::Contact && now != Status::Contact && self.predictor.traces[i].is_known() {
+        if self.predictor.state.status[i] == Status::Contact
+            && now != Status::Contact
+            && self.predictor.traces[i].is_known()
+        {
             let mean_penetration = self.neighbourhood.local.mean_penetration;
             self.predictor.count(&self.solver.problem, i, -1.0, mean_penetration);
         }
@@ -212,8 +252,9 @@ impl EquilibriumPath {
         self.predictor.set(i, now, 0.0);
     }
 
-    /// Changes the field around the local problem by `changes` at the shell \[m\], since its load has changed by `load`. The load of the
-    /// contact will change by `response` \[N\] when the pending displacements are applied.
+    /// Changes the field around the local problem by
+    /// `changes` at the shell \[m\], since its load has changed by `load`. The load of the contact will
+    /// change by `response` \[N\] when the pending displacements are applied.
     fn propagate(&mut self, changes: &[f64], load: f64, response: f64, avalanche: &mut Avalanche) {
         let (limit, scale) = (self.pending_limit(), self.frame.scale);
         let problem = &*self.problem();
@@ -230,8 +271,10 @@ impl EquilibriumPath {
             }
         }
         if !near.shell.is_empty() {
-            let far = |targets: &[usize]| problem.field.far_from_load(load, &near.centre, near.reach, targets);
-            for (&i, change) in self.predictor.state.contacts.iter().zip(far(&self.predictor.state.contacts)) {
+            let far =
+                |targets: &[usize]| problem.field.far_from_load(load, &near.centre, near.reach, targets);
+            for (&i, change) in self.predictor.state.contacts.iter().zip(far(&self.predictor.state.contacts))
+            {
                 self.pending.add_far(i, change);
             }
             let candidates = std::mem::take(&mut self.predictor.candidates);
@@ -243,8 +286,8 @@ impl EquilibriumPath {
         self.expect_load(self.neighbourhood.local.mean_penetration, response);
     }
 
-    /// Propagates the difference between the solution curve of a local problem and its linear prediction, which the rest of the contact
-    /// does not have.
+    /// Propagates the difference between the solution curve of a local problem and its linear prediction,
+    /// which the rest of the contact does not have.
     pub(super) fn propagate_curve(&mut self, curve: &[CurveState], avalanche: &mut Avalanche) {
         let near = &self.neighbourhood;
         if near.shell.is_empty() {
@@ -256,7 +299,8 @@ impl EquilibriumPath {
             let i = member.asperity;
             ReferenceState { asperity: i, radius: *a, more: self.predictor.radius_rate(problem, i) * way }
         };
-        let members: Vec<ReferenceState> = near.local.members.iter().zip(&near.origin).map(reference).collect();
+        let members: Vec<ReferenceState> =
+            near.local.members.iter().zip(&near.origin).map(reference).collect();
         let changes = near.local.displacement_changes(problem, &near.shell, &near.centre, &members);
         let (load, reciprocal_load) = near.local.unexpected_load(problem, &members);
         let before = self.energy.expected_n();
@@ -266,15 +310,15 @@ impl EquilibriumPath {
         self.log.work_j += grown * mean_square(curve, way);
     }
 
-    /// Counts the work of the load that contacts will have when pending displacements are applied; from here on it is larger by `more`
-    /// \[N\].
+    /// Counts the work of the load that contacts will have when pending displacements are applied; from here
+    /// on it is larger by `more` \[N\].
     pub(super) fn expect_load(&mut self, mean_penetration: f64, more: f64) {
         self.log.work_j += self.energy.expect_load(mean_penetration, more);
         self.predictor.add_load(more);
     }
 
-    /// Advances the predictors of the members to the mean penetration of the local problem, and counts the work: along a solution curve if there is one.
-    /// Without new `rates` they keep theirs.
+    /// Advances the predictors of the members to the mean penetration of the local problem, and counts the
+    /// work: along a solution curve if there is one. Without new `rates` they keep theirs.
     pub(super) fn advance_members(&mut self, curve: &[CurveState], rates: Option<&[f64]>) {
         let problem = &*self.problem();
         let local = &self.neighbourhood.local;
@@ -287,14 +331,22 @@ impl EquilibriumPath {
                 None => PenetrationTrace::new(local.mean_penetration, asperity.penetration(*a), from.rate),
             };
             let along_curve = from.at == self.neighbourhood.reference && curve.len() > 1;
-            self.log.work_j += if along_curve { work_along(problem, i, k, curve) } else { work(problem, i, from, trace) };
+            self.log.work_j +=
+                if along_curve { work_along(problem, i, k, curve) } else { work(problem, i, from, trace) };
             traces.push((i, *a, trace));
         }
         self.predictor.replace_all(problem, &traces);
     }
 
     /// Records the transitions of one relaxation; its energy is that of the first.
-    pub(super) fn record(&mut self, applied: &[Transition], mean_penetration: f64, before: Totals, after: Totals, energy: f64) {
+    pub(super) fn record(
+        &mut self,
+        applied: &[Transition],
+        mean_penetration: f64,
+        before: Totals,
+        after: Totals,
+        energy: f64,
+    ) {
         let mut moved = Vec::with_capacity(applied.len());
         for transition in applied {
             if !matches!(transition.kind, EventKind::JumpOff | EventKind::Merge) {

@@ -13,8 +13,8 @@ use crate::asperities::solve::precision::Precision;
 use std::sync::Arc;
 
 impl EquilibriumPath {
-    /// Resumes a path. The state need not be an equilibrium: the difference of the potential is charged to the last event, and the initial
-    /// residual is not recorded as predictor residual.
+    /// Resumes a path. The state need not be an equilibrium: the difference of the potential is charged to
+    /// the last event, and the initial residual is not recorded as predictor residual.
     pub(crate) fn resume(problem: Arc<Problem>, from: PathCheckpoint) -> Result<Self, PhysicsError> {
         let (mean_penetration, drift) = (from.state.mean_penetration_m, from.log.drift_m);
         let (longest, scale) = from.lengths;
@@ -85,7 +85,8 @@ impl EquilibriumPath {
         self.postponed.clone_from(&checkpoint.postponed);
         self.totals = checkpoint.totals;
         self.log.restore(&checkpoint.log, checkpoint.events, checkpoint.segments);
-        self.energy = EnergyLedger::new(self.state().mean_penetration_m, self.log.events.len(), checkpoint.balance);
+        self.energy =
+            EnergyLedger::new(self.state().mean_penetration_m, self.log.events.len(), checkpoint.balance);
         self.pending.clear();
     }
 }

@@ -1,7 +1,8 @@
 //! Length of the path increments.
 //!
-//! An increment ends on a multiple of `h = h_0/2^k`. A rejected one is halved; an accepted one may be followed by one of twice the length
-//! where that ends on a multiple of itself. So the increments do not depend on where a path began.
+//! An increment ends on a multiple of `h = h_0/2^k`. A rejected one is halved; an accepted one may be
+//! followed by one of twice the length where that ends on a multiple of itself. So the increments do not
+//! depend on where a path began.
 
 use crate::asperities::numerics::Steps;
 use crate::{LoopError, PhysicsError};
@@ -58,13 +59,16 @@ impl StepControl {
     /// Accepts the increment to `target`; true if it ends a longest one.
     pub(super) fn accept(&mut self, target: f64) -> bool {
         let size = self.size(self.halvings);
-        if self.halvings > 0 && next_multiple(target, size, self.sense) == next_multiple(target, 2.0 * size, self.sense) {
+        if self.halvings > 0
+            && next_multiple(target, size, self.sense) == next_multiple(target, 2.0 * size, self.sense)
+        {
             self.halvings -= 1;
         }
         is_multiple(target, self.longest)
     }
 
-    /// Halves the increment from `here` \[m\] after a rejection; false if the global problem is to be relaxed instead.
+    /// Halves the increment from `here` \[m\] after a rejection; false if the global problem is to be relaxed
+    /// instead.
     pub(super) fn halve(&mut self, here: f64) -> bool {
         let most = self.limits.max_halvings;
         if self.halvings >= most {
@@ -87,9 +91,18 @@ impl StepControl {
     }
 
     /// Counts a trial, of `most`; `asperity` is the caller's number of the one that is to change.
-    pub(super) fn count_trial(&mut self, most: usize, mean_penetration_m: f64, asperity: usize) -> Result<(), PhysicsError> {
+    pub(super) fn count_trial(
+        &mut self,
+        most: usize,
+        mean_penetration_m: f64,
+        asperity: usize,
+    ) -> Result<(), PhysicsError> {
         self.trials += 1;
-        if self.trials <= most { Ok(()) } else { Err(LoopError::EndlessAvalanche { mean_penetration_m, events: most, asperity }.into()) }
+        if self.trials <= most {
+            Ok(())
+        } else {
+            Err(LoopError::EndlessAvalanche { mean_penetration_m, events: most, asperity }.into())
+        }
     }
 }
 

@@ -14,8 +14,9 @@ pub(crate) struct Trigger {
 }
 
 impl Problem {
-    /// Transitions that are due among contacts and absorbed asperities (`touched`) and free asperities (`free`), whose penetrations are
-    /// known at the present mean penetration; but for merging and splitting.
+    /// Transitions that are due among contacts and absorbed asperities
+    /// (`touched`) and free asperities (`free`), whose penetrations are known at the present mean
+    /// penetration; but for merging and splitting.
     pub(crate) fn triggers(&self, predictor: &Predictor, touched: &[usize], free: &[usize]) -> Vec<Trigger> {
         let mut due = Vec::new();
         let mut add = |transition: Transition| due.extend(self.trigger(transition, predictor));
@@ -67,7 +68,8 @@ impl Problem {
 
     /// True if a transition that was due still is.
     pub(crate) fn is_due(&self, change: &Transition, predictor: &Predictor) -> bool {
-        predictor.permits(change) && self.overshoot(change, predictor).is_some_and(|overshoot| overshoot >= 0.0)
+        predictor.permits(change)
+            && self.overshoot(change, predictor).is_some_and(|overshoot| overshoot >= 0.0)
     }
 
     /// A transition with its overshoot, if it is due.
@@ -76,12 +78,14 @@ impl Problem {
         (overshoot >= 0.0).then_some(Trigger { transition, overshoot })
     }
 
-    /// Overshoot of a state beyond a transition; negative before it, none if it is not possible or the penetration is unknown.
+    /// Overshoot of a state beyond a transition; negative before it, none if it is not possible or the
+    /// penetration is unknown.
     fn overshoot(&self, change: &Transition, predictor: &Predictor) -> Option<f64> {
         let state = &predictor.state;
         Some(match self.condition(change, state)? {
             Condition::Penetration { asperity, value_m } => {
-                (predictor.traces[asperity].penetration()? - value_m) / self.asperities[asperity].jump_off_penetration().abs()
+                (predictor.traces[asperity].penetration()? - value_m)
+                    / self.asperities[asperity].jump_off_penetration().abs()
             }
             Condition::Shrinking { contact, value_m } => 1.0 - state.radius[contact] / value_m,
             Condition::Growing { contact, value_m } => state.radius[contact] / value_m - 1.0,
@@ -97,11 +101,17 @@ impl Problem {
             (asperity.penetration(state.radius[j]) - asperity.penetration(radius)).abs()
         };
         match self.condition(&trigger.transition, state) {
-            Some(Condition::Penetration { asperity, .. }) => trigger.overshoot * self.asperities[asperity].jump_off_penetration().abs(),
-            Some(Condition::Shrinking { contact, value_m } | Condition::Growing { contact, value_m }) if state.radius[contact] > 0.0 => {
+            Some(Condition::Penetration { asperity, .. }) => {
+                trigger.overshoot * self.asperities[asperity].jump_off_penetration().abs()
+            }
+            Some(Condition::Shrinking { contact, value_m } | Condition::Growing { contact, value_m })
+                if state.radius[contact] > 0.0 =>
+            {
                 between(contact, value_m)
             }
-            Some(Condition::Touching { pair: [_, by] }) => between(by, state.radius[by] * (1.0 - trigger.overshoot)),
+            Some(Condition::Touching { pair: [_, by] }) => {
+                between(by, state.radius[by] * (1.0 - trigger.overshoot))
+            }
             Some(Condition::Shrinking { .. } | Condition::Growing { .. }) | None => 0.0,
         }
     }

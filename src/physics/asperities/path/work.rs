@@ -20,8 +20,8 @@ pub(super) fn work(problem: &Problem, i: usize, from: PenetrationTrace, to: Pene
     })
 }
 
-/// `∫F dΔ` of a member of a local problem along a solution curve, with radius and mean penetration as cubics in the radius that was
-/// followed \[J\].
+/// `∫F dΔ` of a member of a local problem along a solution curve, with radius and mean penetration as cubics
+/// in the radius that was followed \[J\].
 pub(super) fn work_along(problem: &Problem, i: usize, member: usize, curve: &[CurveState]) -> f64 {
     let asperity = &problem.asperities[i];
     let part = |pair: &[CurveState]| {
@@ -29,14 +29,21 @@ pub(super) fn work_along(problem: &Problem, i: usize, member: usize, curve: &[Cu
         gauss(|p| {
             let [start, end] = [from, to].map(|state| (state.radius[member], state.direction[member] * span));
             let a = hermite(p, start.0, end.0, start.1, end.1);
-            asperity.load(a) * hermite_slope(p, from.mean_penetration, to.mean_penetration, from.slope * span, to.slope * span)
+            asperity.load(a)
+                * hermite_slope(
+                    p,
+                    from.mean_penetration,
+                    to.mean_penetration,
+                    from.slope * span,
+                    to.slope * span,
+                )
         })
     };
     curve.windows(2).map(part).sum()
 }
 
-/// `∫s² dΔ` along a solution curve, or a way \[m\] without one, on which s rises from 0 to 1 in proportion to the radius that was followed,
-/// or to Δ \[m\].
+/// `∫s² dΔ` along a solution curve, or a way \[m\] without one, on which s rises from 0 to 1 in proportion to
+/// the radius that was followed, or to Δ \[m\].
 pub(super) fn mean_square(curve: &[CurveState], way: f64) -> f64 {
     let (Some(first), Some(last)) = (curve.first(), curve.last()) else { return way / 3.0 };
     let whole = last.at - first.at;
@@ -47,7 +54,14 @@ pub(super) fn mean_square(curve: &[CurveState], way: f64) -> f64 {
         let span = pair[1].at - pair[0].at;
         gauss(|p| {
             let s = (pair[0].at + p * span - first.at) / whole;
-            s * s * hermite_slope(p, pair[0].mean_penetration, pair[1].mean_penetration, pair[0].slope * span, pair[1].slope * span)
+            s * s
+                * hermite_slope(
+                    p,
+                    pair[0].mean_penetration,
+                    pair[1].mean_penetration,
+                    pair[0].slope * span,
+                    pair[1].slope * span,
+                )
         })
     };
     curve.windows(2).map(part).sum()

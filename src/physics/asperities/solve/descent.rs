@@ -52,7 +52,16 @@ impl GlobalSolver {
     ) -> Result<Relaxed, NotConverged> {
         let exact = tolerance <= self.problem.tolerance_m();
         let relaxed = Relaxed::default();
-        let mut descent = Descent { solver: self, state, exact, tolerance, failing, relaxed, step: Vec::new(), start: Vec::new() };
+        let mut descent = Descent {
+            solver: self,
+            state,
+            exact,
+            tolerance,
+            failing,
+            relaxed,
+            step: Vec::new(),
+            start: Vec::new(),
+        };
         damped_newton(&mut descent, first.into(), failing.damping(), tolerance)?;
         Ok(descent.relaxed)
     }
@@ -82,8 +91,10 @@ impl NonlinearSystem for Descent<'_> {
         // The first step reduces the residual to its square at best; the next ones are to be the last.
         let wanted = match (self.exact, round) {
             (true, 0) => limits.linear_residual,
-            (true, _) => (0.1 * self.tolerance / worst.largest_m).clamp(limits.linear_residual_min, limits.linear_residual),
-            (false, _) => (0.3 * self.tolerance / worst.largest_m).clamp(limits.linear_residual, limits.linear_residual_intermediate),
+            (true, _) => (0.1 * self.tolerance / worst.largest_m)
+                .clamp(limits.linear_residual_min, limits.linear_residual),
+            (false, _) => (0.3 * self.tolerance / worst.largest_m)
+                .clamp(limits.linear_residual, limits.linear_residual_intermediate),
         };
         self.step = self.solver.newton_step(self.state, wanted);
         limit(&mut self.step, self.state, limits.radius_change);
@@ -100,7 +111,8 @@ impl NonlinearSystem for Descent<'_> {
         let mut local = self.around(worst.contact.asperity);
         let problem = &*Arc::clone(&self.solver.problem);
         let (start, effort) = (local.radius.clone(), &mut self.solver.effort);
-        let solved = local.solve_with(problem, Hold::MeanPenetration, Damping::PATIENT, effort).is_ok() && local.rates(problem).1;
+        let solved = local.solve_with(problem, Hold::MeanPenetration, Damping::PATIENT, effort).is_ok()
+            && local.rates(problem).1;
         if !solved {
             match self.failing {
                 Failing::EndsAtOnce => return Some(Err(worst.contact)),
@@ -123,19 +135,34 @@ impl NonlinearSystem for Descent<'_> {
 }
 
 impl Descent<'_> {
-    /// The contacts nearest to one, with the radii from which the step began and the present displacement by the others.
+    /// The contacts nearest to one, with the radii from which the step began and the present displacement by
+    /// the others.
     fn around(&mut self, centre: usize) -> LocalProblem {
         let problem = &*Arc::clone(&self.solver.problem);
         let (state, mean_penetration) = (&*self.state, self.state.mean_penetration_m);
         let (all, count) = (state.contacts.len(), problem.numerics.events.local_contacts);
-        let near = problem.neighbours.nearest(problem.place(centre), count, all, |i| state.status[i] == Status::Contact);
+        let near = problem
+            .neighbours
+            .nearest(problem.place(centre), count, all, |i| state.status[i] == Status::Contact);
         let mut members: Vec<usize> = near.iter().map(|(_, i)| *i).collect();
         members.sort_unstable();
-        let resting =
-            |&i: &usize| (i, PenetrationTrace::of(&problem.asperities[i], mean_penetration, state.radius[i], 0.0), state.radius[i]);
+        let resting = |&i: &usize| {
+            (
+                i,
+                PenetrationTrace::of(&problem.asperities[i], mean_penetration, state.radius[i], 0.0),
+                state.radius[i],
+            )
+        };
         let contacts: Vec<_> = members.iter().map(resting).collect();
         let mut local = LocalProblem::default();
-        local.gather(problem, &contacts, &[], mean_penetration, Extent::of(members.len(), all), &mut self.solver.effort);
+        local.gather(
+            problem,
+            &contacts,
+            &[],
+            mean_penetration,
+            Extent::of(members.len(), all),
+            &mut self.solver.effort,
+        );
         for (k, i) in members.iter().enumerate() {
             let Ok(at) = state.contacts.binary_search(i) else { continue };
             local.members[k].outside -= self.solver.residual[at];
@@ -147,7 +174,8 @@ impl Descent<'_> {
 
 /// Shortens a step to a largest relative change of a radius.
 fn limit(step: &mut [f64], state: &State, most: f64) {
-    let stride = state.contacts.iter().zip(&*step).map(|(&i, s)| s.abs() / state.radius[i]).fold(0.0, f64::max);
+    let stride =
+        state.contacts.iter().zip(&*step).map(|(&i, s)| s.abs() / state.radius[i]).fold(0.0, f64::max);
     if stride > most {
         step.iter_mut().for_each(|s| *s *= most / stride);
     }

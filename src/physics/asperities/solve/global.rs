@@ -1,9 +1,10 @@
 //! Global problem: equilibrium of all contacts at one mean penetration.
 //!
-//! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = Δ + z_i`. The paper's Eq 9 is a diagonal
-//! Newton update of all contacts at once; it diverges. Here:
+//! Unknowns are the contact radii; the residual of each is `D_i − ŵ_i − δ_JKR(a_i)`, with `D_i = Δ + z_i`.
+//! The paper's Eq 9 is a diagonal Newton update of all contacts at once; it diverges. Here:
 //! - [`GlobalSolver::newton`]: Newton's method with GMRES ([`super::descent`]);
-//! - [`GlobalSolver::relax`]: overdamped relaxation ([`super::overdamped`]), where Newton's method fails at a fold or after a jump.
+//! - [`GlobalSolver::relax`]: overdamped relaxation ([`super::overdamped`]), where Newton's method fails at a
+//!   fold or after a jump.
 
 use super::precision::Precision;
 use super::residual::NotConverged;
@@ -62,7 +63,13 @@ impl GlobalSolver {
     /// Goes on with another number of merged contacts.
     pub(crate) fn replace_problem(&mut self, problem: Arc<Problem>) {
         let inverse = std::mem::take(&mut self.inverse);
-        *self = Self { effort: self.effort, swept_at: self.swept_at, precision: self.precision, inverse, ..Self::new(problem) };
+        *self = Self {
+            effort: self.effort,
+            swept_at: self.swept_at,
+            precision: self.precision,
+            inverse,
+            ..Self::new(problem)
+        };
     }
 
     /// Begins a solution.
@@ -74,7 +81,8 @@ impl GlobalSolver {
         }
     }
 
-    /// Evaluates displacements, residuals and tangent of a state; returns the largest residual with its asperity.
+    /// Evaluates displacements, residuals and tangent of a state; returns the largest residual with its
+    /// asperity.
     pub(crate) fn evaluate(&mut self, state: &mut State) -> NotConverged {
         let problem = &*Arc::clone(&self.problem);
         problem.spots(state, &mut self.spots);
@@ -106,7 +114,12 @@ impl GlobalSolver {
         let Self { problem, tangents, inverse, diagonal, residual, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
         let inverse = inverse.of(problem, state, &tangents.contacts, diagonal);
-        let found = gmres(&jacobian, inverse, residual, Limits { tolerance: wanted, products: problem.numerics.solver.products });
+        let found = gmres(
+            &jacobian,
+            inverse,
+            residual,
+            Limits { tolerance: wanted, products: problem.numerics.solver.products },
+        );
         self.count(found)
     }
 
@@ -115,7 +128,8 @@ impl GlobalSolver {
         let Self { tangents, diagonal, residual, .. } = &*self;
         let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
         let limits = Limits { tolerance: 1e-3, products: self.problem.numerics.solver.products };
-        let step = gmres(&Jacobian { tangent: &tangents.contacts, diagonal: &damped }, None, residual, limits);
+        let step =
+            gmres(&Jacobian { tangent: &tangents.contacts, diagonal: &damped }, None, residual, limits);
         self.count(step)
     }
 
@@ -138,7 +152,8 @@ impl GlobalSolver {
         self.count(rates)
     }
 
-    /// True if all free asperities are to be evaluated at a mean penetration \[m\]: the first in each interval of the numerics.
+    /// True if all free asperities are to be evaluated at a mean penetration \[m\]: the first in each
+    /// interval of the numerics.
     pub(crate) fn begins_block(&mut self, mean_penetration: f64) -> bool {
         let interval = self.problem.numerics.solver.free_interval * self.problem.rms_height_m;
         let block = |at: f64| (at / interval).floor();
@@ -148,7 +163,12 @@ impl GlobalSolver {
     }
 
     /// Penetrations `D_i − ŵ_i` of free asperities, with their rates, at an equilibrium with given rates.
-    pub(crate) fn penetrations(&mut self, state: &State, rates: &[f64], wanted: &[usize]) -> Vec<PenetrationTrace> {
+    pub(crate) fn penetrations(
+        &mut self,
+        state: &State,
+        rates: &[f64],
+        wanted: &[usize],
+    ) -> Vec<PenetrationTrace> {
         let problem = &*Arc::clone(&self.problem);
         problem.spots(state, &mut self.spots);
         let (mut displacement, mut slopes) = (Vec::new(), Vec::new());
@@ -157,7 +177,9 @@ impl GlobalSolver {
         field.along_path(&self.spots, rates, wanted, found, &mut self.tangents.free, &mut self.effort);
         let at = state.mean_penetration_m;
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
-        pairs.map(|((w, slope), &i)| PenetrationTrace::new(at, at + problem.heights[i] - w, 1.0 - slope)).collect()
+        pairs
+            .map(|((w, slope), &i)| PenetrationTrace::new(at, at + problem.heights[i] - w, 1.0 - slope))
+            .collect()
     }
 
     /// Displacement at one asperity by contacts of these radii \[m\].
@@ -167,7 +189,11 @@ impl GlobalSolver {
     }
 
     /// Displacements at asperities by contacts of these radii \[m\].
-    pub(crate) fn displacements<const N: usize>(&mut self, spots: &[(usize, f64)], asperities: &[usize; N]) -> [f64; N] {
+    pub(crate) fn displacements<const N: usize>(
+        &mut self,
+        spots: &[(usize, f64)],
+        asperities: &[usize; N],
+    ) -> [f64; N] {
         self.problem.columns(spots.iter().copied(), &mut self.spots);
         let mut displacements = Vec::with_capacity(N);
         self.problem.field.displacements(&self.spots, asperities, &mut displacements, &mut self.effort);

@@ -1,7 +1,8 @@
 //! Damped Newton method for the contact radii.
 //!
-//! No step changes a radius by more than a fraction. A step that does not reduce the largest residual is halved.
-//! Near the edge of another contact, where the slope of the field is infinite, only short steps reduce it.
+//! No step changes a radius by more than a fraction. A step that does not reduce the largest residual is
+//! halved. Near the edge of another contact, where the slope of the field is infinite, only short steps
+//! reduce it.
 
 use super::residual::NotConverged;
 
@@ -45,7 +46,8 @@ pub(crate) trait NonlinearSystem {
     /// Computes a step from the present unknowns.
     fn begin_step(&mut self, round: usize, worst: &Worst);
 
-    /// Reduces the largest residual by other means, after a full step that has not; nothing if there are none.
+    /// Reduces the largest residual by other means, after a full step that has not; nothing if there are
+    /// none.
     fn repair(&mut self, _worst: &Worst) -> Option<Result<Worst, NotConverged>> {
         None
     }
@@ -142,7 +144,8 @@ mod tests {
     fn law_a_step_that_does_not_descend_is_repaired() {
         let few = Damping { least_share: 1.0, rounds: 8 };
         assert!(solve(few, Some(0.5)).is_ok_and(|x| x.abs() < 1e-12));
-        // Without an equilibrium nearby the solution ends at once; repairs that do not help end with the rounds.
+        // Without an equilibrium nearby the solution ends at once; repairs that do not help end with the
+        // rounds.
         assert!(solve(Damping::PATIENT, Some(f64::NAN)).is_err());
         assert!(solve(few, Some(5.0)).is_err());
     }

@@ -29,7 +29,12 @@ impl Relaxing for Whole<'_> {
     }
 
     fn spots(&self) -> Vec<ContactView> {
-        self.state.contacts.iter().zip(&self.solver.residual).map(|(&i, r)| (i, self.state.radius[i], *r)).collect()
+        self.state
+            .contacts
+            .iter()
+            .zip(&self.solver.residual)
+            .map(|(&i, r)| (i, self.state.radius[i], *r))
+            .collect()
     }
 
     fn take_out(&mut self, change: &Transition) {
@@ -39,7 +44,8 @@ impl Relaxing for Whole<'_> {
     fn finish(&mut self) -> bool {
         let mut end = self.state.clone();
         let first = self.solver.evaluate(&mut end);
-        let found = self.solver.newton(&mut end, first, Failing::Ends, self.solver.problem.tolerance_m()).is_ok();
+        let found =
+            self.solver.newton(&mut end, first, Failing::Ends, self.solver.problem.tolerance_m()).is_ok();
         if found {
             *self.state = end;
         }

@@ -1,8 +1,9 @@
-//! Overdamped relaxation `da_i/dt = residual_i` (pseudo-transient continuation), where Newton's method finds no equilibrium: after a fold
-//! or a jump.
+//! Overdamped relaxation `da_i/dt = residual_i` (pseudo-transient continuation), where Newton's method finds
+//! no equilibrium: after a fold or a jump.
 //!
-//! Implicit Euler steps grow as the residual falls. A contact whose branch has ended leaves, and a contact that a larger one has reached is
-//! absorbed. The order follows from the flow and not from the output steps. For point interaction it is a gradient flow of the potential.
+//! Implicit Euler steps grow as the residual falls. A contact whose branch has ended leaves, and a contact
+//! that a larger one has reached is absorbed. The order follows from the flow and not from the output steps.
+//! For point interaction it is a gradient flow of the potential.
 
 use super::residual::NotConverged;
 use crate::Reason;
@@ -30,7 +31,8 @@ pub(crate) trait Relaxing {
 
 /// Relaxes to an equilibrium; the transitions on the way are returned.
 ///
-/// It ends early where an asperity that has just been uncovered (`uncovered`) is absorbed again, or absorbs the contact that covered it.
+/// It ends early where an asperity that has just been uncovered (`uncovered`) is absorbed again, or absorbs
+/// the contact that covered it.
 pub(crate) fn relax(
     contact: &mut impl Relaxing,
     problem: &Problem,
@@ -61,8 +63,9 @@ pub(crate) fn relax(
             continue;
         }
         if time > finish {
-            // Near the equilibrium Newton's method finishes, unless the equilibrium is unstable. At the edge of a contact, where the slope
-            // of its field jumps, implicit steps would alternate without end, while short descending steps converge.
+            // Near the equilibrium Newton's method finishes, unless the equilibrium is unstable. At the edge
+            // of a contact, where the slope of its field jumps, implicit steps would alternate without end,
+            // while short descending steps converge.
             if contact.finish() {
                 continue;
             }
@@ -70,7 +73,8 @@ pub(crate) fn relax(
             finish *= limits.finish_growth;
         }
         let residual: Vec<f64> = spots.iter().map(|spot| spot.2).collect();
-        let stride = |step: &[f64]| step.iter().zip(&spots).map(|(s, spot)| s.abs() / spot.1).fold(0.0, f64::max);
+        let stride =
+            |step: &[f64]| step.iter().zip(&spots).map(|(s, spot)| s.abs() / spot.1).fold(0.0, f64::max);
         let mut step = Vec::new();
         for _ in 0..limits.attempts {
             let stable;

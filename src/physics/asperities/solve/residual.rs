@@ -16,10 +16,15 @@ impl NotConverged {
         Self { residual_m, asperity, reason: Reason::Residual }
     }
 
-    /// The larger of two residuals \[m\], of an asperity. One that is not a number must not pass as a small one.
+    /// The larger of two residuals \[m\], of an asperity. One that is not a number must not pass as a small
+    /// one.
     pub(crate) fn or_residual(self, residual_m: f64, asperity: usize) -> Self {
         let residual_m = residual_m.abs();
-        if residual_m.is_nan() || residual_m > self.residual_m { Self::residual(residual_m, asperity) } else { self }
+        if residual_m.is_nan() || residual_m > self.residual_m {
+            Self::residual(residual_m, asperity)
+        } else {
+            self
+        }
     }
 
     /// Another reason, at an asperity.

@@ -1,8 +1,8 @@
 //! Approximate inverse of the Jacobian, by groups of contacts.
 //!
-//! Restricted additive Schwarz method (Cai & Sarkis, SIAM J. Sci. Comput. 21:792, 1999): contacts are divided into small groups. Each is
-//! solved with the contacts around it, and the solution for the group itself is kept. The response of a contact is determined by its
-//! neighbours, which lose what it gains.
+//! Restricted additive Schwarz method (Cai & Sarkis, SIAM J. Sci. Comput. 21:792, 1999): contacts are divided
+//! into small groups. Each is solved with the contacts around it, and the solution for the group itself is
+//! kept. The response of a contact is determined by its neighbours, which lose what it gains.
 
 use crate::asperities::contact::problem::Problem;
 use crate::asperities::contact::state::{State, Status};
@@ -59,8 +59,15 @@ impl LocalInverse {
         self.solutions += 1;
     }
 
-    /// An approximate inverse of a tangent and a diagonal at the contacts of a state; none for a dense one, whose products cost little.
-    pub(super) fn of(&mut self, problem: &Problem, state: &State, tangent: &Tangent, diagonal: &[f64]) -> Option<&dyn Preconditioner> {
+    /// An approximate inverse of a tangent and a diagonal at the contacts of a state; none for a dense one,
+    /// whose products cost little.
+    pub(super) fn of(
+        &mut self,
+        problem: &Problem,
+        state: &State,
+        tangent: &Tangent,
+        diagonal: &[f64],
+    ) -> Option<&dyn Preconditioner> {
         if tangent.is_exact() {
             self.groups.clear();
             return None;
@@ -92,7 +99,12 @@ impl LocalInverse {
         }
         let before = std::mem::replace(&mut self.index, state.contacts.clone());
         let only_in = |these: &[usize], others: &[usize]| -> Vec<usize> {
-            these.iter().zip(places_in(these, others)).filter(|(_, at)| at.is_none()).map(|(i, _)| *i).collect()
+            these
+                .iter()
+                .zip(places_in(these, others))
+                .filter(|(_, at)| at.is_none())
+                .map(|(i, _)| *i)
+                .collect()
         };
         for i in only_in(&before, &state.contacts) {
             for group in self.groups.iter_mut().filter(|group| group.near.binary_search(&i).is_ok()) {
@@ -182,7 +194,10 @@ impl Partition {
             return number;
         }
         let span = |along: usize| {
-            let ends = places.iter().map(|p| p[along]).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (p.min(low), p.max(high)));
+            let ends = places
+                .iter()
+                .map(|p| p[along])
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (p.min(low), p.max(high)));
             ends.1 - ends.0
         };
         let along = usize::from(span(1) > span(0));
@@ -224,16 +239,21 @@ impl Group {
             return;
         }
         let count = self.members.len() as f64;
-        self.centre = [0, 1].map(|along| self.members.iter().map(|i| problem.place(*i)[along]).sum::<f64>() / count);
-        let near = problem.neighbours.nearest(&self.centre, problem.numerics.solver.groups.solved_together, state.contacts.len(), |i| {
-            state.status[i] == Status::Contact
-        });
+        self.centre =
+            [0, 1].map(|along| self.members.iter().map(|i| problem.place(*i)[along]).sum::<f64>() / count);
+        let near = problem.neighbours.nearest(
+            &self.centre,
+            problem.numerics.solver.groups.solved_together,
+            state.contacts.len(),
+            |i| state.status[i] == Status::Contact,
+        );
         self.near.clear();
         self.near.extend(near.iter().map(|(_, i)| *i).chain(self.members.iter().copied()));
         self.near.sort_unstable();
         self.near.dedup();
         self.place(state);
-        let apart: Vec<[f64; 2]> = self.near.iter().map(|i| problem.neighbours.apart(problem.place(*i), &self.centre)).collect();
+        let apart: Vec<[f64; 2]> =
+            self.near.iter().map(|i| problem.neighbours.apart(problem.place(*i), &self.centre)).collect();
         self.reach = apart.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
         lu.factor(&jacobian.transposed(&self.near, &self.columns, &apart), self.near.len());
         let columns = self.members.len();
@@ -262,7 +282,8 @@ impl Group {
 }
 
 impl Jacobian<'_> {
-    /// Its part for some contacts, column by column: their numbers, their positions among all, and their places relative to a centre \[m\].
+    /// Its part for some contacts, column by column: their numbers, their positions among all, and their
+    /// places relative to a centre \[m\].
     fn transposed(&self, contacts: &[usize], at: &[u32], apart: &[[f64; 2]]) -> Vec<f64> {
         let Self { problem, state, tangent, diagonal } = self;
         let n = contacts.len();
@@ -274,7 +295,11 @@ impl Jacobian<'_> {
             let images = tangent.own(*at as usize);
             let slope = problem.material.compliance() * asperity.load_slope(a);
             fields_of_load(&columns, k, [slope, images], &mut distances, line);
-            for (by, r) in line.iter_mut().zip(&distances).filter(|(_, r)| **r <= problem.numerics.solver.groups.point_load_distance * a) {
+            for (by, r) in line
+                .iter_mut()
+                .zip(&distances)
+                .filter(|(_, r)| **r <= problem.numerics.solver.groups.point_load_distance * a)
+            {
                 *by = problem.spot_field(asperity, *r, a).1 + images;
             }
             line[k] = diagonal[*at as usize] + images;
@@ -285,7 +310,13 @@ impl Jacobian<'_> {
 
 /// `slope/r + images` at each place, and the distance r from the place of number `from`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn fields_of_load([x, y]: &[Vec<f64>; 2], from: usize, [slope, images]: [f64; 2], distances: &mut [f64], fields: &mut [f64]) {
+fn fields_of_load(
+    [x, y]: &[Vec<f64>; 2],
+    from: usize,
+    [slope, images]: [f64; 2],
+    distances: &mut [f64],
+    fields: &mut [f64],
+) {
     for ((x_at, y_at), (r, field)) in x.iter().zip(y).zip(distances.iter_mut().zip(fields)) {
         let (dx, dy) = (x_at - x[from], y_at - y[from]);
         *r = (dx * dx + dy * dy).sqrt();

@@ -2,18 +2,21 @@
 
 use crate::jkr::Asperity;
 
-/// Penetration `D − ŵ` \[m\] at one mean penetration, with its rate along the path. For a free asperity it decides on the jump-in.
+/// Penetration `D − ŵ` \[m\] at one mean penetration, with its rate along the path. For a free asperity it
+/// decides on the jump-in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PenetrationTrace {
     /// Mean penetration \[m\].
     pub(crate) at: f64,
-    /// Penetration there \[m\]; not a number if unknown, so that a trace is three numbers long. Read by [`Self::penetration`].
+    /// Penetration there \[m\]; not a number if unknown, so that a trace is three numbers long. Read by
+    /// [`Self::penetration`].
     value: f64,
     /// Derivative to the mean penetration.
     pub(crate) rate: f64,
 }
 
-/// Largest rate that is extrapolated. Without a fold nearby it is below 1.2; at a fold it is infinite, over a short way.
+/// Largest rate that is extrapolated. Without a fold nearby it is below 1.2; at a fold it is infinite, over a
+/// short way.
 const MAX_RATE: f64 = 4.0;
 
 /// Lower bound of |dδ/da|, against division by zero at the end of the branch.
@@ -35,8 +38,8 @@ impl PenetrationTrace {
         Self { at, value: asperity.penetration(a), rate: asperity.penetration_slope(a) * speed }
     }
 
-    /// `da/dΔ` of a contact of radius `a` \[m\]. At the end of its branch it is infinite; beyond it, where other contacts hold it, it has
-    /// the opposite sign.
+    /// `da/dΔ` of a contact of radius `a` \[m\]. At the end of its branch it is infinite; beyond it, where
+    /// other contacts hold it, it has the opposite sign.
     pub(crate) fn speed(&self, asperity: &Asperity, a: f64) -> f64 {
         let slope = asperity.penetration_slope(a);
         self.rate / if slope.abs() < MIN_SLOPE { MIN_SLOPE.copysign(slope) } else { slope }

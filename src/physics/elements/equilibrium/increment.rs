@@ -7,7 +7,8 @@ use crate::elements::problem::{Problem, State};
 use crate::memory::filled;
 use rayon::prelude::*;
 
-/// Displacement and pressure since a state in double precision, and gap and residual at that state, in single precision.
+/// Displacement and pressure since a state in double precision, and gap and residual at that state, in single
+/// precision.
 pub(crate) struct SinglePrecisionIncrement {
     pub(crate) gap: Vec<f32>,
     pub(crate) residual: Vec<f32>,
@@ -54,15 +55,17 @@ impl SinglePrecisionIncrement {
             problem.heights.par_chunks(PANEL),
             state.bonds.par_chunks(PANEL),
         );
-        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(|(gap, residual, moved, pressed, u, p, z, bonds)| {
-            for (k, (gap, residual)) in gap.iter_mut().zip(residual).enumerate() {
-                let exact = u[k] - mean_penetration - z[k];
-                *gap = exact as f32;
-                *residual = (p[k] + problem.bond(bonds[k], exact).tension - centre) as f32;
-            }
-            moved.fill(0.0);
-            pressed.fill(0.0);
-        });
+        fields.into_par_iter().with_min_len(grain(PANEL)).for_each(
+            |(gap, residual, moved, pressed, u, p, z, bonds)| {
+                for (k, (gap, residual)) in gap.iter_mut().zip(residual).enumerate() {
+                    let exact = u[k] - mean_penetration - z[k];
+                    *gap = exact as f32;
+                    *residual = (p[k] + problem.bond(bonds[k], exact).tension - centre) as f32;
+                }
+                moved.fill(0.0);
+                pressed.fill(0.0);
+            },
+        );
     }
 
     /// Enters the tension that the points with another bond would have had at the beginning.
@@ -75,8 +78,9 @@ impl SinglePrecisionIncrement {
 
     /// Adds the changes to the state.
     pub(crate) fn commit(&self, state: &mut State) {
-        let fields =
-            (&mut state.displacement, &mut state.pressure, &self.displacement, &self.pressure).into_par_iter().with_min_len(grain(1));
+        let fields = (&mut state.displacement, &mut state.pressure, &self.displacement, &self.pressure)
+            .into_par_iter()
+            .with_min_len(grain(1));
         fields.for_each(|(u, p, moved, pressed)| {
             *u += f64::from(*moved);
             *p += f64::from(*pressed);

@@ -1,14 +1,19 @@
-//! Equilibrium at a fixed mean penetration: a local minimum of the energy, reached without passing over a barrier.
+//! Equilibrium at a fixed mean penetration: a local minimum of the energy, reached without passing over a
+//! barrier.
 //!
-//! L-BFGS with two pairs and a *split* preconditioner, `M⁻¹ = P_O S K⁻¹ S P_O + P_C (V'' + 0.7)⁻¹ P_C` with `M` in E*/dx. Points in contact `C`, of
-//! `V'' > 0.3 E*/dx`, are nearly fixed by the wall. On the open points `O` the inverse of the elastic operator is the opposite-order (Calderón)
-//! preconditioner of the hypersingular operator, with the factor `S = 1 − min(V'', 0)` where the law softens. The condition number grows only as log² of
-//! the number of points along a side. An iteration is two operator applications, four transforms.
+//! L-BFGS with two pairs and a *split* preconditioner, `M⁻¹ = P_O S K⁻¹ S P_O + P_C (V'' + 0.7)⁻¹ P_C` with
+//! `M` in E*/dx. Points in contact `C`, of `V'' > 0.3 E*/dx`, are nearly fixed by the wall. On the open
+//! points
+//! `O` the inverse of the elastic operator is the opposite-order (Calderón) preconditioner of the hypersingular operator, with the factor `S
+//! = 1 − min(V'', 0)` where the law softens. The condition number grows only as log² of the number of points
+//! along a side. An iteration is two operator applications, four transforms.
 //!
-//! Where bonds change in a few places, as in most events, these are brought to equilibrium first, on [patches](super::patch) of the grid.
+//! Where bonds change in a few places, as in most events, these are brought to equilibrium first, on
+//! [patches](super::patch) of the grid.
 //!
-//! The state, its energy and its residual are in double precision at the beginning and at the end. Directions, and displacement and pressure since the
-//! beginning, are in single precision. The pressure is replaced by that of the displacement before a state counts as an equilibrium.
+//! The state, its energy and its residual are in double precision at the beginning and at the end.
+//! Directions, and displacement and pressure since the beginning, are in single precision. The pressure is
+//! replaced by that of the displacement before a state counts as an equilibrium.
 
 use super::increment::{SinglePrecisionIncrement, level};
 use super::pairs::{Gradient, Pairs};
@@ -65,7 +70,8 @@ pub struct Minimiser {
     pub(crate) single: Waves<f32>,
     pub(crate) gradient: Gradient,
     pub(crate) previous: Gradient,
-    /// About the mean of pressure and tension of the whole grid, which is subtracted before the gradient is rounded.
+    /// About the mean of pressure and tension of the whole grid, which is subtracted before the gradient is
+    /// rounded.
     pub(crate) centre: f64,
     pub(crate) slopes: Vec<f32>,
     pub(crate) direction: Vec<f32>,
@@ -91,7 +97,9 @@ pub(crate) struct WorkingState<'a> {
 impl WorkingState<'_> {
     /// Displacement of a point.
     pub(crate) fn displacement(&self, point: usize) -> f64 {
-        self.state.displacement[point] + f64::from(self.displacement_change[point]) + f64::from(self.relaxed[point])
+        self.state.displacement[point]
+            + f64::from(self.displacement_change[point])
+            + f64::from(self.relaxed[point])
     }
 }
 
@@ -123,13 +131,41 @@ struct Fields<'a> {
 impl<'a> Fields<'a> {
     /// Rows of the fields, each with its flag of stale bonds.
     fn rows(self, columns: usize) -> impl IndexedParallelIterator<Item = (Points<'a>, &'a mut bool)> {
-        let SinglePrecisionIncrement { gap, residual, displacement, pressure, touching, stale, .. } = self.increment;
-        let before = gap.par_chunks(columns).zip(residual.par_chunks(columns)).zip(self.direction.par_chunks(columns));
-        let after = displacement.par_chunks_mut(columns).zip(pressure.par_chunks_mut(columns)).zip(touching.par_chunks_mut(columns));
-        let law = self.gradient.par_chunks_mut(columns).zip(self.slopes.par_chunks_mut(columns)).zip(self.bonds.par_chunks(columns));
+        let SinglePrecisionIncrement { gap, residual, displacement, pressure, touching, stale, .. } =
+            self.increment;
+        let before =
+            gap.par_chunks(columns).zip(residual.par_chunks(columns)).zip(self.direction.par_chunks(columns));
+        let after = displacement
+            .par_chunks_mut(columns)
+            .zip(pressure.par_chunks_mut(columns))
+            .zip(touching.par_chunks_mut(columns));
+        let law = self
+            .gradient
+            .par_chunks_mut(columns)
+            .zip(self.slopes.par_chunks_mut(columns))
+            .zip(self.bonds.par_chunks(columns));
         before.zip(after).zip(law).zip(stale).map(
-            |(((((gap, residual), direction), ((displacement, pressure), touching)), ((gradient, slopes), bonds)), stale)| {
-                (Points { gap, residual, displacement, pressure, bonds, direction, gradient, slopes, touching }, stale)
+            |(
+                (
+                    (((gap, residual), direction), ((displacement, pressure), touching)),
+                    ((gradient, slopes), bonds),
+                ),
+                stale,
+            )| {
+                (
+                    Points {
+                        gap,
+                        residual,
+                        displacement,
+                        pressure,
+                        bonds,
+                        direction,
+                        gradient,
+                        slopes,
+                        touching,
+                    },
+                    stale,
+                )
             },
         )
     }
@@ -137,9 +173,16 @@ impl<'a> Fields<'a> {
 
 /// Local relaxation after events.
 pub(crate) trait LocalRelaxation {
-    /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest residual to the smallest. `centre` is the mean
-    /// of pressure and tension of the grid. The points whose bond has changed since, with the bond before.
-    fn relax(&mut self, on: WorkingState<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)>;
+    /// Brings the places around the points whose bonds have changed to equilibrium, given from the largest
+    /// residual to the smallest. `centre` is the mean of pressure and tension of the grid. The points whose
+    /// bond has changed since, with the bond before.
+    fn relax(
+        &mut self,
+        on: WorkingState<'_>,
+        changed: &[usize],
+        centre: f64,
+        accuracy: Accuracy,
+    ) -> Vec<(usize, Bonding)>;
 }
 
 impl Minimiser {
@@ -172,12 +215,14 @@ impl Minimiser {
         self.double.transforms + self.single.transforms
     }
 
-    /// Moves `state` to the local minimum of the energy at its mean penetration; bonds around contacts grow on the way.
+    /// Moves `state` to the local minimum of the energy at its mean penetration; bonds around contacts grow
+    /// on the way.
     pub fn minimise(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Outcome {
         self.minimise_with(problem, state, accuracy, &ANY, None)
     }
 
-    /// As [`Self::minimise`], with events relaxed by `local` first. Ends where an event takes the load out of `loads`.
+    /// As [`Self::minimise`], with events relaxed by `local` first. Ends where an event takes the load out of
+    /// `loads`.
     pub(crate) fn minimise_with(
         &mut self,
         problem: &Problem,
@@ -194,7 +239,8 @@ impl Minimiser {
         loop {
             (outcome.residual, outcome.converged) = (here.rms / stress, accuracy.includes(here, stress));
             if !exact && (outcome.converged || here.rms < limits.renewed_residual * first) {
-                // Checked once more with the pressure without rounding and with bonds renewed, or continued from there.
+                // Checked once more with the pressure without rounding and with bonds renewed, or continued
+                // from there.
                 self.commit(state);
                 exact = problem.update_bonds(state, Nucleation::Suppressed).is_empty();
                 here = self.start_from(problem, state);
@@ -208,7 +254,8 @@ impl Minimiser {
             }
             outcome.iterations += 1;
             let descent = self.search(problem);
-            let Some((step, residual)) = self.descend(problem, state, descent, ElasticResponse::Transformed) else {
+            let Some((step, residual)) = self.descend(problem, state, descent, ElasticResponse::Transformed)
+            else {
                 self.commit(state);
                 if exact {
                     return outcome;
@@ -221,14 +268,20 @@ impl Minimiser {
             };
             (here, exact) = (residual, false);
             change += step.largest;
-            if change > limits.bond_update_change * problem.reach() && here.largest <= limits.bond_update_residual * stress {
+            if change > limits.bond_update_change * problem.reach()
+                && here.largest <= limits.bond_update_residual * stress
+            {
                 change = 0.0;
                 let late = outcome.iterations >= limits.whole_iterations;
                 outcome.left = late && !loads.contains(&self.load());
                 if outcome.left {
                     return outcome;
                 }
-                let changed = problem.spread_bonds(&mut state.bonds, &self.increment.touching, &mut self.increment.stale);
+                let changed = problem.spread_bonds(
+                    &mut state.bonds,
+                    &self.increment.touching,
+                    &mut self.increment.stale,
+                );
                 if !changed.is_empty() {
                     self.increment.rebond(problem, &state.bonds, &changed);
                     if late && let Some(local) = local.as_mut() {
@@ -239,7 +292,13 @@ impl Minimiser {
                     here = self.present_residual(problem, state);
                 }
             }
-            self.pairs.push_pair(&mut self.direction, descent.mean, step.length, &self.gradient, &self.previous);
+            self.pairs.push_pair(
+                &mut self.direction,
+                descent.mean,
+                step.length,
+                &self.gradient,
+                &self.previous,
+            );
         }
     }
 
@@ -281,7 +340,8 @@ impl Minimiser {
         points
     }
 
-    /// Starts from a state: its pressure without the rounding of increments, and its gradient. A patch keeps the pressure and the mean of the whole grid.
+    /// Starts from a state: its pressure without the rounding of increments, and its gradient. A patch keeps
+    /// the pressure and the mean of the whole grid.
     pub(crate) fn start_from(&mut self, problem: &Problem, state: &mut State) -> Residual {
         if !problem.half_space.is_patch() {
             problem.refresh(state, &mut self.double);
@@ -310,15 +370,26 @@ impl Minimiser {
         state.pressure.iter_mut().zip(&added).for_each(|(pressure, added)| *pressure += added);
     }
 
-    /// Mean of a field of which the sum is given, to be subtracted: none on a patch, where the mean is not fixed.
+    /// Mean of a field of which the sum is given, to be subtracted: none on a patch, where the mean is not
+    /// fixed.
     fn mean(&self, problem: &Problem, sum: f64) -> f64 {
         if problem.half_space.is_patch() { 0.0 } else { sum / self.slopes.len() as f64 }
     }
 
     /// Moves the state along the direction, and computes the gradient and the slopes of the law there.
-    fn evaluate(&mut self, problem: &Problem, state: &State, shift: Shift, response: ElasticResponse) -> TrialEvaluation {
+    fn evaluate(
+        &mut self,
+        problem: &Problem,
+        state: &State,
+        shift: Shift,
+        response: ElasticResponse,
+    ) -> TrialEvaluation {
         let columns = problem.half_space.columns();
-        let stride = Stride { length: shift.length as f32, mean: shift.mean as f32, centre: (self.centre - self.increment.centre) as f32 };
+        let stride = Stride {
+            length: shift.length as f32,
+            mean: shift.mean as f32,
+            centre: (self.centre - self.increment.centre) as f32,
+        };
         let pieces = self.increment.pieces;
         let fields = Fields {
             increment: &mut self.increment,
@@ -336,10 +407,15 @@ impl Minimiser {
         let parts: Vec<Found> = match response {
             ElasticResponse::Transformed => {
                 let rows = rows.zip(self.response.par_chunks_mut(columns));
-                problem.half_space.backward(Operator::Stiffness, &mut self.single, rows, |(row, kept), response| {
-                    kept.copy_from_slice(response);
-                    take(row, response)
-                })
+                problem.half_space.backward(
+                    Operator::Stiffness,
+                    &mut self.single,
+                    rows,
+                    |(row, kept), response| {
+                        kept.copy_from_slice(response);
+                        take(row, response)
+                    },
+                )
             }
             ElasticResponse::Kept => {
                 let rows = rows.zip(self.response.par_chunks(columns)).with_min_len(grain(columns));
@@ -383,7 +459,8 @@ impl Minimiser {
     fn precondition(&mut self, problem: &Problem, weights: [f64; PAIRS]) -> [f64; PAIRS] {
         let Self { preconditioner, single, direction, gradient, pairs, slopes, .. } = self;
         let weights = weights.map(|weight| weight as f32);
-        let right = Right { field: &gradient.values, mean: gradient.mean as f32, changes: pairs.changes(), weights };
+        let right =
+            Right { field: &gradient.values, mean: gradient.mean as f32, changes: pairs.changes(), weights };
         preconditioner.divide(problem, single, direction, &right, slopes)
     }
 
@@ -392,18 +469,28 @@ impl Minimiser {
         let columns = problem.half_space.columns();
         let weights = weights.map(|weight| weight as f32);
         let [a, b] = self.pairs.steps().map(|step| step.par_chunks(columns));
-        let rows = self.direction.par_chunks_mut(columns).zip(a.zip(b)).zip(self.gradient.values.par_chunks(columns));
-        let parts = problem
-            .half_space
-            .forward(&mut self.single, rows, |((direction, (a, b)), gradient), to| descending(direction, to, [a, b], weights, gradient));
-        let [sum, product, largest] =
-            parts.iter().fold([0.0; 3], |all: [f64; 3], part| [all[0] + part[0], all[1] + part[1], all[2].max(part[2])]);
+        let rows = self
+            .direction
+            .par_chunks_mut(columns)
+            .zip(a.zip(b))
+            .zip(self.gradient.values.par_chunks(columns));
+        let parts =
+            problem.half_space.forward(&mut self.single, rows, |((direction, (a, b)), gradient), to| {
+                descending(direction, to, [a, b], weights, gradient)
+            });
+        let [sum, product, largest] = parts
+            .iter()
+            .fold([0.0; 3], |all: [f64; 3], part| [all[0] + part[0], all[1] + part[1], all[2].max(part[2])]);
         let mean = self.mean(problem, sum);
-        Descent { mean, slope: product - self.slopes.len() as f64 * mean * self.gradient.mean, largest: largest + mean.abs() }
+        Descent {
+            mean,
+            slope: product - self.slopes.len() as f64 * mean * self.gradient.mean,
+            largest: largest + mean.abs(),
+        }
     }
 
-    /// Moves the state along the direction by at most the reach of the law and so far that the energy falls: the step and the residual after it. Without
-    /// such a step the state stays.
+    /// Moves the state along the direction by at most the reach of the law and so far that the energy falls:
+    /// the step and the residual after it. Without such a step the state stays.
     pub(crate) fn descend(
         &mut self,
         problem: &Problem,
@@ -422,11 +509,21 @@ impl Minimiser {
     }
 
     /// As [`Self::descend`], with a known response and after a first trial.
-    fn shorten(&mut self, problem: &Problem, state: &State, mut trial: Trial) -> Option<(AcceptedStep, Residual)> {
+    fn shorten(
+        &mut self,
+        problem: &Problem,
+        state: &State,
+        mut trial: Trial,
+    ) -> Option<(AcceptedStep, Residual)> {
         let Descent { mean, largest, .. } = trial.descent;
         for _ in 0..problem.numerics.equilibrium.shortenings {
             let shorter = trial.shorter();
-            let there = self.evaluate(problem, state, Shift { length: shorter - trial.length, mean }, ElasticResponse::Kept);
+            let there = self.evaluate(
+                problem,
+                state,
+                Shift { length: shorter - trial.length, mean },
+                ElasticResponse::Kept,
+            );
             if trial.suffices(shorter, &there) {
                 return Some((AcceptedStep { length: shorter, largest: shorter * largest }, there.residual));
             }

@@ -1,4 +1,5 @@
-//! Equilibrium on a grid: L-BFGS with events followed on patches, and Newton's method where that does not end.
+//! Equilibrium on a grid: L-BFGS with events followed on patches, and Newton's method where that does not
+//! end.
 
 mod increment;
 pub mod minimise;
@@ -33,12 +34,17 @@ impl Equilibrium {
         Ok(Self { minimiser: Minimiser::new(problem)?, patches, points: problem.half_space.transformed() })
     }
 
-    /// Moves `state` to the local minimum of the energy at its mean penetration; bonds around contacts grow on the way. The iterations are those on the whole
-    /// grid.
+    /// Moves `state` to the local minimum of the energy at its mean penetration; bonds around contacts grow
+    /// on the way. The iterations are those on the whole grid.
     ///
     /// # Errors
     /// Not enough memory.
-    pub fn find(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
+    pub fn find(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        accuracy: Accuracy,
+    ) -> Result<Outcome, PhysicsError> {
         self.find_within(problem, state, accuracy, &ANY)
     }
 
@@ -50,7 +56,8 @@ impl Equilibrium {
         accuracy: Accuracy,
         loads: &Loads,
     ) -> Result<Outcome, PhysicsError> {
-        let events: Option<&mut dyn LocalRelaxation> = if self.patches.are_none() { None } else { Some(&mut self.patches) };
+        let events: Option<&mut dyn LocalRelaxation> =
+            if self.patches.are_none() { None } else { Some(&mut self.patches) };
         let first = self.minimiser.minimise_with(problem, state, accuracy, loads, events);
         if first.converged || first.left {
             return Ok(first);

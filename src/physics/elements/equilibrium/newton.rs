@@ -1,8 +1,9 @@
-//! Newton's method with truncated conjugate gradients (Steihaug, SIAM J. Numer. Anal. 20:626, 1983): the second way to an equilibrium, where L-BFGS
-//! does not end.
+//! Newton's method with truncated conjugate gradients (Steihaug, SIAM J. Numer. Anal. 20:626, 1983): the
+//! second way to an equilibrium, where L-BFGS does not end.
 //!
-//! The model of the energy is `g·p + ½ p·(K + V'')p`. Its minimum is approached by conjugate gradients with the split preconditioner, until a direction has
-//! a negative curvature or the step would exceed the reach of the law; such a step ends at that reach.
+//! The model of the energy is `g·p + ½ p·(K + V'')p`. Its minimum is approached by conjugate gradients with
+//! the split preconditioner, until a direction has a negative curvature or the step would exceed the reach of
+//! the law; such a step ends at that reach.
 
 use super::minimise::{Accuracy, ElasticResponse, Minimiser, Outcome};
 use super::passes::{PAIRS, Right};
@@ -52,7 +53,12 @@ impl Minimiser {
     ///
     /// # Errors
     /// Not enough memory.
-    pub fn newton(&mut self, problem: &Problem, state: &mut State, accuracy: Accuracy) -> Result<Outcome, PhysicsError> {
+    pub fn newton(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        accuracy: Accuracy,
+    ) -> Result<Outcome, PhysicsError> {
         let points = problem.half_space.points();
         let mut found = Solution { step: filled(points, 0.0)?, response: filled(points, 0.0)? };
         let stress = problem.stress();
@@ -67,7 +73,11 @@ impl Minimiser {
             outcome.iterations += self.conjugate_gradients(problem, &mut found);
             std::mem::swap(&mut self.direction, &mut found.step);
             std::mem::swap(&mut self.response, &mut found.response);
-            let descent = Descent { mean: 0.0, slope: dot(&self.direction, &self.gradient.values), largest: largest(&self.direction) };
+            let descent = Descent {
+                mean: 0.0,
+                slope: dot(&self.direction, &self.gradient.values),
+                largest: largest(&self.direction),
+            };
             let accepted = self.descend(problem, state, descent, ElasticResponse::Kept);
             self.commit(state);
             if accepted.is_none() {
@@ -76,8 +86,10 @@ impl Minimiser {
         }
     }
 
-    /// Rate at which the displacement follows the mean penetration at an equilibrium, and the stiffness `dF/dΔ` of the contact: `(K + V'')·rate = V''` for
-    /// displacements of zero mean, by conjugate gradients. The stiffness `Σ V''·(1 − rate)` has an error of second order in that of the rate.
+    /// Rate at which the displacement follows the mean penetration at an equilibrium, and the stiffness
+    /// `dF/dΔ` of the contact: `(K + V'')·rate =
+    /// V''` for displacements of zero mean, by conjugate gradients. The stiffness `Σ V''·(1 − rate)` has an
+    /// error of second order in that of the rate.
     ///
     /// # Errors
     /// Not enough memory.
@@ -87,7 +99,8 @@ impl Minimiser {
         let mut inner = self.take_scratch();
         inner.residual.copy_from_slice(&self.slopes);
         remove_mean(&mut inner.residual);
-        let residual = problem.numerics.equilibrium.rate_residual * dot(&inner.residual, &inner.residual).sqrt();
+        let residual =
+            problem.numerics.equilibrium.rate_residual * dot(&inner.residual, &inner.residual).sqrt();
         self.solve(problem, &mut inner, &mut found, Limits { step: f64::INFINITY, residual });
         self.return_scratch(inner);
         let [stiffness] = total(
@@ -109,7 +122,8 @@ impl Minimiser {
         (self.previous.values, self.response) = (residual, stiff);
     }
 
-    /// Computes the step within the reach of the law and its response, and returns the iterations of conjugate gradients.
+    /// Computes the step within the reach of the law and its response, and returns the iterations of
+    /// conjugate gradients.
     fn conjugate_gradients(&mut self, problem: &Problem, found: &mut Solution) -> usize {
         found.step.fill(0.0);
         found.response.fill(0.0);
@@ -117,7 +131,8 @@ impl Minimiser {
         let mean = self.gradient.mean as f32;
         let fields = (&mut inner.residual, &self.gradient.values).into_par_iter().with_min_len(grain(1));
         fields.for_each(|(to, from)| *to = mean - from);
-        let residual = problem.numerics.equilibrium.inner_residual * dot(&inner.residual, &inner.residual).sqrt();
+        let residual =
+            problem.numerics.equilibrium.inner_residual * dot(&inner.residual, &inner.residual).sqrt();
         let iterations = self.solve(problem, &mut inner, found, Limits { step: problem.reach(), residual });
         self.return_scratch(inner);
         iterations
@@ -135,11 +150,18 @@ impl Minimiser {
         for iteration in 1..=most {
             problem.half_space.apply(Operator::Stiffness, &inner.search, &mut inner.stiff, &mut self.single);
             let [curvature] = total(
-                (inner.stiff.par_chunks(PANEL), self.slopes.par_chunks(PANEL), inner.search.par_chunks(PANEL))
+                (
+                    inner.stiff.par_chunks(PANEL),
+                    self.slopes.par_chunks(PANEL),
+                    inner.search.par_chunks(PANEL),
+                )
                     .into_par_iter()
-                    .map(|(stiff, slopes, search)| panel_sums([stiff, slopes, search], |[k, slope, p]| [p * (k + slope * p)])),
+                    .map(|(stiff, slopes, search)| {
+                        panel_sums([stiff, slopes, search], |[k, slope, p]| [p * (k + slope * p)])
+                    }),
             );
-            let room = (limits.step - largest(&found.step)).max(0.0) / largest(&inner.search).max(f64::MIN_POSITIVE);
+            let room =
+                (limits.step - largest(&found.step)).max(0.0) / largest(&inner.search).max(f64::MIN_POSITIVE);
             let length = product / curvature;
             if curvature <= 0.0 && limits.step.is_infinite() {
                 return iteration;
@@ -168,7 +190,9 @@ impl Minimiser {
 
     /// `residual ← residual − length (K + V'') search`, without its mean.
     fn lower(&self, inner: &mut Inner, length: f32) {
-        let fields = (&mut inner.residual, &inner.stiff, &self.slopes, &inner.search).into_par_iter().with_min_len(grain(1));
+        let fields = (&mut inner.residual, &inner.stiff, &self.slopes, &inner.search)
+            .into_par_iter()
+            .with_min_len(grain(1));
         fields.for_each(|(to, stiff, slope, search)| *to -= length * (stiff + slope * search));
         remove_mean(&mut inner.residual);
     }

@@ -1,5 +1,5 @@
-//! Pairs of steps and gradient changes of L-BFGS. Their products are kept, so that a direction takes one pass over the fields for a new pair and one for
-//! each of the two loops.
+//! Pairs of steps and gradient changes of L-BFGS. Their products are kept, so that a direction takes one pass
+//! over the fields for a new pair and one for each of the two loops.
 
 use super::passes::{PAIRS, new_pair, products};
 use crate::PhysicsError;
@@ -34,8 +34,19 @@ pub(crate) struct Pairs {
 
 impl Pairs {
     pub(crate) fn new(points: usize) -> Result<Self, PhysicsError> {
-        let pair = || Ok::<_, PhysicsError>(Pair { step: filled(points, 0.0)?, change: filled(points, 0.0)?, mean: 0.0 });
-        Ok(Self { pairs: [pair()?, pair()?], products: [[0.0; PAIRS]; PAIRS], onto: [0.0; PAIRS], order: Vec::with_capacity(PAIRS) })
+        let pair = || {
+            Ok::<_, PhysicsError>(Pair {
+                step: filled(points, 0.0)?,
+                change: filled(points, 0.0)?,
+                mean: 0.0,
+            })
+        };
+        Ok(Self {
+            pairs: [pair()?, pair()?],
+            products: [[0.0; PAIRS]; PAIRS],
+            onto: [0.0; PAIRS],
+            order: Vec::with_capacity(PAIRS),
+        })
     }
 
     pub(crate) fn clear(&mut self) {
@@ -52,11 +63,22 @@ impl Pairs {
         self.pairs[0].step = field;
     }
 
-    /// Keeps `direction`, a step of length `length` along which the gradient changed from `before`, in place of the oldest pair, unless the curvature
-    /// along it is not positive. What `direction` holds then has no meaning.
-    pub(crate) fn push_pair(&mut self, direction: &mut Vec<f32>, mean: f64, length: f64, gradient: &Gradient, before: &Gradient) {
-        let place =
-            if self.order.len() < PAIRS { (0..PAIRS).find(|place| !self.order.contains(place)).unwrap_or(0) } else { self.order.remove(0) };
+    /// Keeps `direction`, a step of length `length` along which the gradient changed from
+    /// `before`, in place of the oldest pair, unless the curvature along it is not positive. What `direction`
+    /// holds then has no meaning.
+    pub(crate) fn push_pair(
+        &mut self,
+        direction: &mut Vec<f32>,
+        mean: f64,
+        length: f64,
+        gradient: &Gradient,
+        before: &Gradient,
+    ) {
+        let place = if self.order.len() < PAIRS {
+            (0..PAIRS).find(|place| !self.order.contains(place)).unwrap_or(0)
+        } else {
+            self.order.remove(0)
+        };
         std::mem::swap(&mut self.pairs[place].step, direction);
         self.pairs[place].mean = mean;
         let other = 1 - place;
@@ -71,7 +93,11 @@ impl Pairs {
             old.step.par_chunks(PANEL),
             old.change.par_chunks(PANEL),
         );
-        let sums: [f64; 6] = total(fields.into_par_iter().map(|(y, g, old, s, sa, ya)| new_pair(y, [g, old, s, sa, ya], shift, unit)));
+        let sums: [f64; 6] = total(
+            fields
+                .into_par_iter()
+                .map(|(y, g, old, s, sa, ya)| new_pair(y, [g, old, s, sa, ya], shift, unit)),
+        );
         self.pairs[place].change = change;
         let [own, square, with_other, of_other, onto, onto_other] = sums;
         self.products[place][place] = own;
@@ -86,7 +112,9 @@ impl Pairs {
     /// Products of the steps with a gradient that no step has led to.
     pub(crate) fn project_gradient(&mut self, gradient: &Gradient) {
         let [a, b] = self.steps().map(|step| step.par_chunks(PANEL));
-        self.onto = total((gradient.values.par_chunks(PANEL), a, b).into_par_iter().map(|(g, a, b)| products(g, [a, b])));
+        self.onto = total(
+            (gradient.values.par_chunks(PANEL), a, b).into_par_iter().map(|(g, a, b)| products(g, [a, b])),
+        );
         self.centre(gradient);
     }
 
@@ -98,7 +126,8 @@ impl Pairs {
         }
     }
 
-    /// Weights of the first loop, from the newest pair to the oldest: the direction before the preconditioner is `gradient − Σ w_i y_i`.
+    /// Weights of the first loop, from the newest pair to the oldest: the direction before the preconditioner
+    /// is `gradient − Σ w_i y_i`.
     pub(crate) fn first(&self) -> [f64; PAIRS] {
         let mut weights = [0.0; PAIRS];
         for (k, i) in self.order.iter().enumerate().rev() {
@@ -108,7 +137,8 @@ impl Pairs {
         weights
     }
 
-    /// Weights of the second loop: after the preconditioner `Σ w_i s_i` is added. `onto` are the products of the direction with the changes.
+    /// Weights of the second loop: after the preconditioner `Σ w_i s_i` is added. `onto` are the products of
+    /// the direction with the changes.
     pub(crate) fn second(&self, first: [f64; PAIRS], onto: [f64; PAIRS]) -> [f64; PAIRS] {
         let mut added = [0.0; PAIRS];
         for (k, i) in self.order.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Passes over one row of the fields of an iteration, compiled for the vectors of the processor. Sums are formed in blocks of one length, so that their
-//! digits are the same on every processor.
+//! Passes over one row of the fields of an iteration, compiled for the vectors of the processor. Sums are
+//! formed in blocks of one length, so that their digits are the same on every processor.
 
 use crate::elements::grid::sums::{panel_largest, panel_sums};
 use crate::elements::law::morse::Smooth;
@@ -36,7 +36,12 @@ impl Right<'_> {
 
     #[inline(always)]
     fn first(&self, n: usize) -> Self {
-        Self { field: &self.field[..n], mean: self.mean, changes: self.changes.map(|change| &change[..n]), weights: self.weights }
+        Self {
+            field: &self.field[..n],
+            mean: self.mean,
+            changes: self.changes.map(|change| &change[..n]),
+            weights: self.weights,
+        }
     }
 }
 
@@ -68,20 +73,32 @@ pub(crate) fn open_part(to: &mut [f32], right: &Right<'_>, slopes: &[f32], split
     }
 }
 
-/// The direction after the preconditioner, of which `open` is the part at open points: its products with the changes.
+/// The direction after the preconditioner, of which `open` is the part at open points: its products with the
+/// changes.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-pub(crate) fn divided(to: &mut [f32], open: &[f32], right: &Right<'_>, slopes: &[f32], split: Split) -> [f64; PAIRS] {
+pub(crate) fn divided(
+    to: &mut [f32],
+    open: &[f32],
+    right: &Right<'_>,
+    slopes: &[f32],
+    split: Split,
+) -> [f64; PAIRS] {
     let n = to.len();
     let (right, slopes, open) = (right.first(n), &slopes[..n], &open[..n]);
     for k in 0..n {
         let slope = slopes[k];
-        to[k] = if slope > split.stiff { right.at(k) / (slope + split.added) } else { open[k] * split.scale(slope) };
+        to[k] = if slope > split.stiff {
+            right.at(k) / (slope + split.added)
+        } else {
+            open[k] * split.scale(slope)
+        };
     }
     let [a, b] = right.changes;
     panel_sums([&*to, a, b], |[d, a, b]| [d * a, d * b])
 }
 
-/// `direction ← −(direction + Σ weights_i steps_i)`, written to `to` as well: its sum, its product with the gradient and its largest magnitude.
+/// `direction ← −(direction + Σ weights_i steps_i)`, written to `to` as well: its sum, its product with the
+/// gradient and its largest magnitude.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 pub(crate) fn descending(
     direction: &mut [f32],
@@ -108,8 +125,9 @@ pub(crate) fn products(field: &[f32], others: [&[f32]; PAIRS]) -> [f64; PAIRS] {
     panel_sums([field, a, b], |[g, a, b]| [g * a, g * b])
 }
 
-/// The change `y ← (g − old − shift) × unit` of the gradient along a step `s`, and its products with those of the other pair `a`: of
-/// `[g, old, s, s_a, y_a]`, `[s·y, s·s, s·y_a, y·s_a, g·s, g·s_a]`.
+/// The change `y ← (g − old − shift) × unit` of the gradient along a step
+/// `s`, and its products with those of the other pair `a`: of `[g, old, s, s_a, y_a]`,
+/// `[s·y, s·s, s·y_a, y·s_a, g·s, g·s_a]`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 pub(crate) fn new_pair(y: &mut [f32], fields: [&[f32]; 5], shift: f32, unit: f32) -> [f64; 6] {
     let [g, old, s, sa, ya] = fields;
@@ -195,9 +213,16 @@ struct Block {
     curved: [u8; BLOCK],
 }
 
-/// Moves the points of a row along the direction, to which `response` is the elastic response, and evaluates the law at them.
+/// Moves the points of a row along the direction, to which `response` is the elastic response, and evaluates
+/// the law at them.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-pub(crate) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride, law: &Law, pieces: &Pieces) -> Found {
+pub(crate) fn advance(
+    points: &mut Points<'_>,
+    response: &[f32],
+    stride: Stride,
+    law: &Law,
+    pieces: &Pieces,
+) -> Found {
     let mut found = Found::default();
     let mut beyond = vec![0.0; points.gap.len()];
     let mut block = Block { before: [0.0; BLOCK], curved: [0; BLOCK] };
@@ -222,14 +247,22 @@ pub(crate) fn advance(points: &mut Points<'_>, response: &[f32], stride: Stride,
     found
 }
 
-/// Moves points, with the law as a spring or nothing: true if one has come into contact or left it, and if one is on the curve of the law. Only changes
-/// since the beginning are computed in single precision.
+/// Moves points, with the law as a spring or nothing: true if one has come into contact or left it, and if
+/// one is on the curve of the law. Only changes since the beginning are computed in single precision.
 #[inline(always)]
-fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pieces, beyond: &mut [f32], block: &mut Block) -> [bool; 2] {
+fn glide(
+    points: &mut Points<'_>,
+    response: &[f32],
+    stride: Stride,
+    pieces: &Pieces,
+    beyond: &mut [f32],
+    block: &mut Block,
+) -> [bool; 2] {
     let n = beyond.len();
     let (gap, residual, bonds) = (&points.gap[..n], &points.residual[..n], &points.bonds[..n]);
     let (direction, response) = (&points.direction[..n], &response[..n]);
-    let (displacement, pressure, touching) = (&mut points.displacement[..n], &mut points.pressure[..n], &mut points.touching[..n]);
+    let (displacement, pressure, touching) =
+        (&mut points.displacement[..n], &mut points.pressure[..n], &mut points.touching[..n]);
     let (gradient, slopes) = (&mut points.gradient[..n], &mut points.slopes[..n]);
     let (was, curved) = (&mut block.before[..n], &mut block.curved[..n]);
     let Pieces { stiffness, spring, contact, curved: [[f0, l0], [f1, l1], [f2, l2]], .. } = *pieces;
@@ -269,16 +302,19 @@ fn glide(points: &mut Points<'_>, response: &[f32], stride: Stride, pieces: &Pie
     [changed != 0, any_curved != 0]
 }
 
-/// Adds Morse's law at the bonded points of a block, without branches: true if the law itself has to be evaluated at some point.
+/// Adds Morse's law at the bonded points of a block, without branches: true if the law itself has to be
+/// evaluated at some point.
 #[inline(always)]
 fn bend(points: &mut Points<'_>, stride: Stride, law: Smooth, beyond: &mut [f32], block: &mut Block) -> bool {
     let n = beyond.len();
-    let (gap, displacement, bonds, direction) = (&points.gap[..n], &points.displacement[..n], &points.bonds[..n], &points.direction[..n]);
+    let (gap, displacement, bonds, direction) =
+        (&points.gap[..n], &points.displacement[..n], &points.bonds[..n], &points.direction[..n]);
     let (gradient, slopes) = (&mut points.gradient[..n], &mut points.slopes[..n]);
     let (before, curved) = (&block.before[..n], &mut block.curved[..n]);
     let mut any_curved = 0;
     for k in 0..n {
-        let effect = law.change(gap[k], before[k], displacement[k], stride.length * (direction[k] - stride.mean));
+        let effect =
+            law.change(gap[k], before[k], displacement[k], stride.length * (direction[k] - stride.mean));
         let bonded = bonds[k] as u8 == Bonding::Bonded as u8;
         let holds = bonded & effect.holds;
         let (straight, slope, flat) = (gradient[k], slopes[k], beyond[k]);
@@ -297,7 +333,8 @@ fn bend(points: &mut Points<'_>, stride: Stride, law: Smooth, beyond: &mut [f32]
 fn curve(points: &mut Points<'_>, k: usize, before: f32, centre: f32, law: &Law) -> f32 {
     let gaps = [points.gap[k], before, points.gap[k] + points.displacement[k]].map(f64::from);
     let [begin, before, after]: [Bond; 3] = gaps.map(|gap| law.bond(points.bonds[k], gap));
-    points.gradient[k] = points.residual[k] + points.pressure[k] - centre + (after.tension - begin.tension) as f32;
+    points.gradient[k] =
+        points.residual[k] + points.pressure[k] - centre + (after.tension - begin.tension) as f32;
     points.slopes[k] = after.slope as f32;
     (after.energy - before.energy - before.tension * (gaps[2] - gaps[1])) as f32
 }

@@ -1,14 +1,17 @@
 //! Events on a part of the grid.
 //!
-//! In most events bonds change in a few places, and the displacement changes little elsewhere. Each place is then relaxed alone: the energy of the whole
-//! grid is minimised over displacements that vanish outside a square, a *patch*, with an elastic operator that is exact for offsets of up to half a
-//! side. This is a descent within a subspace, by steps of the same limited length, so that it passes over no barrier that the whole grid would not pass
-//! over. The cost of an iteration is proportional to the area of the patch. If bonds change at the border of a patch, a patch of twice the side replaces
-//! it. Patches of several places do not overlap and are relaxed on several threads; their interaction is neglected until the whole grid is relaxed, which
-//! follows.
+//! In most events bonds change in a few places, and the displacement changes little elsewhere. Each place is
+//! then relaxed alone: the energy of the whole grid is minimised over displacements that vanish outside a
+//! square, a *patch*, with an elastic operator that is exact for offsets of up to half a side. This is a
+//! descent within a subspace, by steps of the same limited length, so that it passes over no barrier that the
+//! whole grid would not pass over. The cost of an iteration is proportional to the area of the patch. If
+//! bonds change at the border of a patch, a patch of twice the side replaces it. Patches of several places do
+//! not overlap and are relaxed on several threads; their interaction is neglected until the whole grid is
+//! relaxed, which follows.
 //!
-//! The displacement of a patch may have a mean. A uniform shift of the whole grid removes it. The energy of the shift is included to first order: the
-//! shift times the mean of pressure and tension. The second order follows with the whole grid.
+//! The displacement of a patch may have a mean. A uniform shift of the whole grid removes it. The energy of
+//! the shift is included to first order: the shift times the mean of pressure and tension. The second order
+//! follows with the whole grid.
 
 use super::minimise::{Accuracy, LocalRelaxation, Minimiser, WorkingState};
 use super::places::{Place, Region, SMALLEST_SIDE, places};
@@ -46,14 +49,20 @@ impl Patches {
         let grid = &problem.half_space;
         let limits = &problem.numerics.patches;
         let largest = grid.rows().min(grid.columns()) / limits.sides_of_grid;
-        if largest < SMALLEST_SIDE || grid.is_patch() || !matches!(problem.attraction, Attraction::Bonded { .. }) {
+        if largest < SMALLEST_SIDE
+            || grid.is_patch()
+            || !matches!(problem.attraction, Attraction::Bonded { .. })
+        {
             return Ok(Self::none());
         }
         let kernel = grid.kernel()?;
-        let sides = std::iter::successors(Some(SMALLEST_SIDE), |side| Some(2 * side)).take_while(|side| *side <= largest);
+        let sides = std::iter::successors(Some(SMALLEST_SIDE), |side| Some(2 * side))
+            .take_while(|side| *side <= largest);
         let points = grid.points().max(limits.points_of_grid * limits.places * limits.always_side.pow(2));
         let count = |side: usize| (points / (limits.points_of_grid * side * side)).clamp(1, limits.places);
-        let of_side = |side: usize| (0..count(side)).map(|_| Patch::new(problem, side, &kernel)).collect::<Result<_, _>>();
+        let of_side = |side: usize| {
+            (0..count(side)).map(|_| Patch::new(problem, side, &kernel)).collect::<Result<_, _>>()
+        };
         sides.map(of_side).collect::<Result<_, _>>().map(Self)
     }
 
@@ -70,7 +79,11 @@ impl Patches {
 
     /// Points of the transforms so far.
     pub(crate) fn transformed(&self) -> u64 {
-        self.0.iter().flatten().map(|patch| patch.minimiser.transforms() * patch.problem.half_space.transformed()).sum()
+        self.0
+            .iter()
+            .flatten()
+            .map(|patch| patch.minimiser.transforms() * patch.problem.half_space.transformed())
+            .sum()
     }
 
     /// A job with the state of the grid in a region; `None` if all patches of this side are in use.
@@ -80,7 +93,8 @@ impl Patches {
         Some(Job { middle: region.middle, patch, moved: false })
     }
 
-    /// Jobs at the next places that do not overlap, as far as there are patches; others are put off until these are done.
+    /// Jobs at the next places that do not overlap, as far as there are patches; others are put off until
+    /// these are done.
     fn begin(
         &mut self,
         on: &WorkingState<'_>,
@@ -148,11 +162,22 @@ impl Job {
 }
 
 impl LocalRelaxation for Patches {
-    /// Places are taken in the order of their largest residuals, and relaxed side by side; one that overlaps an earlier one is left to the whole grid.
-    fn relax(&mut self, mut on: WorkingState<'_>, changed: &[usize], centre: f64, accuracy: Accuracy) -> Vec<(usize, Bonding)> {
+    /// Places are taken in the order of their largest residuals, and relaxed side by side; one that overlaps
+    /// an earlier one is left to the whole grid.
+    fn relax(
+        &mut self,
+        mut on: WorkingState<'_>,
+        changed: &[usize],
+        centre: f64,
+        accuracy: Accuracy,
+    ) -> Vec<(usize, Bonding)> {
         let problem = on.problem;
         let limits = problem.numerics.patches;
-        let accuracy = Accuracy { rms: f64::INFINITY, largest: limits.residual * accuracy.largest, iterations: limits.iterations };
+        let accuracy = Accuracy {
+            rms: f64::INFINITY,
+            largest: limits.residual * accuracy.largest,
+            iterations: limits.iterations,
+        };
         let largest = SMALLEST_SIDE << (self.0.len() - 1);
         let mut places = places(&problem.half_space, changed, limits, largest);
         let (mut put_off, mut done, mut rebonded) = (Vec::new(), Vec::new(), Vec::new());
@@ -189,7 +214,12 @@ impl Patch {
             attraction: whole.attraction,
             numerics: whole.numerics,
         };
-        let state = State { mean_penetration: 0.0, displacement: field()?, pressure: field()?, bonds: filled(side * side, Bonding::Free)? };
+        let state = State {
+            mean_penetration: 0.0,
+            displacement: field()?,
+            pressure: field()?,
+            bonds: filled(side * side, Bonding::Free)?,
+        };
         Ok(Self { minimiser: Minimiser::new(&problem)?, problem, state, start: field()? })
     }
 
@@ -240,7 +270,8 @@ impl Patch {
         })
     }
 
-    /// Gives displacement and bonds to the whole grid. The points whose bond has changed, with the bond before.
+    /// Gives displacement and bonds to the whole grid. The points whose bond has changed, with the bond
+    /// before.
     fn paste(&self, on: &mut WorkingState<'_>, place: Place) -> Vec<(usize, Bonding)> {
         let mut changed = Vec::new();
         for (k, to) in self.points(&on.problem.half_space, place).enumerate() {

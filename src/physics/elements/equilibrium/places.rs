@@ -24,16 +24,24 @@ impl Region {
 }
 
 /// Places around points whose bonds have changed, each with the side of its first patch.
-pub(crate) fn places(grid: &HalfSpace, changed: &[usize], limits: PatchLimits, largest: usize) -> impl Iterator<Item = Region> {
+pub(crate) fn places(
+    grid: &HalfSpace,
+    changed: &[usize],
+    limits: PatchLimits,
+    largest: usize,
+) -> impl Iterator<Item = Region> {
     let radius = limits.place_radius;
     let mut rest = changed.to_vec();
     std::iter::from_fn(move || {
         let first = *rest.first()?;
-        let (near, others) =
-            std::mem::take(&mut rest).into_iter().partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= radius);
+        let (near, others) = std::mem::take(&mut rest)
+            .into_iter()
+            .partition(|point| distance(grid, place(grid, *point), place(grid, first)) <= radius);
         rest = others;
         let (middle, extent) = surroundings(grid, first, near, radius);
-        let side = (limits.side_ratio * extent + limits.side_offset).next_power_of_two().clamp(SMALLEST_SIDE, largest);
+        let side = (limits.side_ratio * extent + limits.side_offset)
+            .next_power_of_two()
+            .clamp(SMALLEST_SIDE, largest);
         Some(Region { middle, side })
     })
 }
@@ -72,7 +80,8 @@ mod tests {
     fn law_points_across_the_edge_are_one_place() -> Result<(), PhysicsError> {
         let grid = HalfSpace::new(128, 128)?;
         let point = |row: usize, column: usize| row * 128 + column;
-        // The first four points are within 12 of the first, across the corner of the periodic square. Their extent of 12 points, twice and 8, is 32.
+        // The first four points are within 12 of the first, across the corner of the periodic square. Their
+        // extent of 12 points, twice and 8, is 32.
         let changed = [point(0, 0), point(127, 2), point(3, 124), point(120, 127), point(64, 64)];
         let found: Vec<Region> = places(&grid, &changed, PatchLimits::DEFAULT, 64).collect();
         assert_eq!(

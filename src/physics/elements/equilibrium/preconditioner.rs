@@ -5,14 +5,16 @@ use crate::elements::grid::half_space::{Operator, Waves};
 use crate::elements::problem::Problem;
 use rayon::prelude::*;
 
-/// Points in contact, of a slope of the law above `stiff`, are nearly fixed by the wall; at open points the law softens near a front of contact.
+/// Points in contact, of a slope of the law above `stiff`, are nearly fixed by the wall; at open points the
+/// law softens near a front of contact.
 const SPLIT: Split = Split { stiff: 0.3, added: 0.7, softening: 1.0 };
 /// All points as open ones.
 const WHOLE: Split = Split { stiff: f32::INFINITY, added: 0.0, softening: 0.0 };
 
 /// The split preconditioner, or the spectral one to compare it with.
 pub struct Preconditioner {
-    /// True if the points in contact have a preconditioner of their own; else that of the open points, shifted, is used for all.
+    /// True if the points in contact have a preconditioner of their own; else that of the open points,
+    /// shifted, is used for all.
     pub split: bool,
 }
 
@@ -26,14 +28,18 @@ impl Preconditioner {
         right: &Right<'_>,
         slopes: &[f32],
     ) -> [f64; PAIRS] {
-        let (split, operator) = if self.split { (SPLIT, Operator::Compliance) } else { (WHOLE, Operator::Shifted) };
+        let (split, operator) =
+            if self.split { (SPLIT, Operator::Compliance) } else { (WHOLE, Operator::Shifted) };
         let half_space = &problem.half_space;
         let columns = half_space.columns();
         let rows = || right.rows(columns).zip(slopes.par_chunks(columns));
         half_space.forward(waves, rows(), |(right, slopes), to| open_part(to, &right, slopes, split));
-        let parts = half_space.backward(operator, waves, direction.par_chunks_mut(columns).zip(rows()), |(to, (right, slopes)), open| {
-            divided(to, open, &right, slopes, split)
-        });
+        let parts = half_space.backward(
+            operator,
+            waves,
+            direction.par_chunks_mut(columns).zip(rows()),
+            |(to, (right, slopes)), open| divided(to, open, &right, slopes, split),
+        );
         parts.iter().fold([0.0; PAIRS], |all, part| [all[0] + part[0], all[1] + part[1]])
     }
 }

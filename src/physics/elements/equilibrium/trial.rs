@@ -8,7 +8,8 @@ pub(crate) struct Residual {
     pub(crate) largest: f64,
 }
 
-/// A direction of descent: its mean, which is no part of it, the slope of the energy along it, and its largest magnitude.
+/// A direction of descent: its mean, which is no part of it, the slope of the energy along it, and its
+/// largest magnitude.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Descent {
     pub(crate) mean: f64,
@@ -16,8 +17,8 @@ pub(crate) struct Descent {
     pub(crate) largest: f64,
 }
 
-/// A state after a step: its residual, slope and elastic curvature of the energy along the direction, and the change of the energy of the law in the step
-/// beyond first order.
+/// A state after a step: its residual, slope and elastic curvature of the energy along the direction, and the
+/// change of the energy of the law in the step beyond first order.
 pub(crate) struct TrialEvaluation {
     pub(crate) residual: Residual,
     pub(crate) slope: f64,
@@ -38,8 +39,8 @@ impl Trial {
         Self { descent, length: 0.0, energy: 0.0, slope: descent.slope }
     }
 
-    /// Goes on to a trial of another length: true if the energy falls enough (Armijo). Its change is of first order, elastic, and that of the law beyond
-    /// first order, from one trial to the next.
+    /// Goes on to a trial of another length: true if the energy falls enough (Armijo). Its change is of first
+    /// order, elastic, and that of the law beyond first order, from one trial to the next.
     pub(crate) fn suffices(&mut self, length: f64, there: &TrialEvaluation) -> bool {
         let by = length - self.length;
         self.energy += by * (self.slope + 0.5 * by * there.curvature) + there.beyond;

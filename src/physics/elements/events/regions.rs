@@ -13,11 +13,12 @@ pub struct Region {
     pub points: usize,
     /// Sum of the pressures, compression positive \[E* dx²\].
     pub load: f64,
-    /// Length of the edge \[dx\], by Crofton's formula along the rows, the columns and the diagonals (Ohser & Mücklich,
-    /// *Statistical Analysis of Microstructures in Materials Science*, Wiley 2000).
+    /// Length of the edge \[dx\], by Crofton's formula along the rows, the columns and the diagonals (Ohser &
+    /// Mücklich, *Statistical Analysis of Microstructures in Materials Science*, Wiley 2000).
     pub perimeter: f64,
-    /// Centroid, row and column \[dx\]: the mean direction on a circle of the length of the square, and the mean place on a surface with mirror images. It
-    /// has no meaning along a direction in which the region closes on itself across the edges.
+    /// Centroid, row and column \[dx\]: the mean direction on a circle of the length of the square, and the
+    /// mean place on a surface with mirror images. It has no meaning along a direction in which the region
+    /// closes on itself across the edges.
     pub centroid: [f64; 2],
     /// Asperities in it.
     pub summits: u32,
@@ -36,7 +37,9 @@ pub struct Labels {
 #[must_use]
 pub fn label(problem: &Problem, state: &State) -> Labels {
     let columns = problem.half_space.columns();
-    let contact: Vec<bool> = (0..problem.half_space.points()).map(|k| problem.touches(state.bonds[k], problem.gap(state, k))).collect();
+    let contact: Vec<bool> = (0..problem.half_space.points())
+        .map(|k| problem.touches(state.bonds[k], problem.gap(state, k)))
+        .collect();
     let all = label_points(&contact, columns);
     if problem.half_space.is_mirrored() { of_the_surface(all, &problem.half_space) } else { all }
 }
@@ -118,7 +121,8 @@ pub fn regions(problem: &Problem, state: &State, labels: &Labels, summits: &[usi
     let rows = problem.half_space.rows();
     let is_mirrored = problem.half_space.is_mirrored();
     let beside = neighbours(&problem.half_space);
-    let mut all = vec![Region { points: 0, load: 0.0, perimeter: 0.0, centroid: [0.0; 2], summits: 0 }; labels.count];
+    let mut all =
+        vec![Region { points: 0, load: 0.0, perimeter: 0.0, centroid: [0.0; 2], summits: 0 }; labels.count];
     // Sums of exp(i 2π x/n) along each direction: the centroid on a circle.
     let mut circles = vec![[0.0_f64; 4]; labels.count];
     for (k, label) in labels.of.iter().enumerate().filter(|(_, label)| **label > 0) {
@@ -127,7 +131,9 @@ pub fn regions(problem: &Problem, state: &State, labels: &Labels, summits: &[usi
         region.points += 1;
         region.load -= problem.bond(state.bonds[k], problem.gap(state, k)).tension;
         let outside = |down: i64, right: i64| labels.of[beside(k, down, right)] != *label;
-        let count = |places: [(i64, i64); 4]| places.into_iter().filter(|(down, right)| outside(*down, *right)).count() as f64;
+        let count = |places: [(i64, i64); 4]| {
+            places.into_iter().filter(|(down, right)| outside(*down, *right)).count() as f64
+        };
         let straight = count([(0, 1), (0, -1), (1, 0), (-1, 0)]);
         let oblique = count([(1, 1), (1, -1), (-1, 1), (-1, -1)]);
         region.perimeter += PI / 8.0 * (straight + oblique / 2.0_f64.sqrt());
@@ -146,7 +152,8 @@ pub fn regions(problem: &Problem, state: &State, labels: &Labels, summits: &[usi
                 region.centroid[at] /= region.points.max(1) as f64;
                 continue;
             }
-            region.centroid[at] = (circle[2 * at + 1].atan2(circle[2 * at]) / TAU).rem_euclid(1.0) * size as f64;
+            region.centroid[at] =
+                (circle[2 * at + 1].atan2(circle[2 * at]) / TAU).rem_euclid(1.0) * size as f64;
         }
     }
     for label in summits.iter().filter_map(|point| labels.of.get(*point)).filter(|label| **label > 0) {
@@ -158,12 +165,20 @@ pub fn regions(problem: &Problem, state: &State, labels: &Labels, summits: &[usi
 /// Neighbour of a point, at an offset in rows and columns: across the edges of a periodic grid, and the
 /// mirror image of itself beyond the edges of a surface with mirror images.
 fn neighbours(grid: &HalfSpace) -> impl Fn(usize, i64, i64) -> usize + use<> {
-    let (size, [own_rows, own_columns], is_mirrored) = ([grid.rows(), grid.columns()], grid.own(), grid.is_mirrored());
+    let (size, [own_rows, own_columns], is_mirrored) =
+        ([grid.rows(), grid.columns()], grid.own(), grid.is_mirrored());
     let on = move |at: usize, by: i64, size: usize, own: usize| {
         let next = at as i64 + by;
-        if is_mirrored { next.clamp(0, own as i64 - 1) as usize } else { next.rem_euclid(size as i64) as usize }
+        if is_mirrored {
+            next.clamp(0, own as i64 - 1) as usize
+        } else {
+            next.rem_euclid(size as i64) as usize
+        }
     };
-    move |point, down, right| on(point / size[1], down, size[0], own_rows) * size[1] + on(point % size[1], right, size[1], own_columns)
+    move |point, down, right| {
+        on(point / size[1], down, size[0], own_rows) * size[1]
+            + on(point % size[1], right, size[1], own_columns)
+    }
 }
 
 /// Kind of the change from one labelling to the next: that of the region whose area changed most.
@@ -190,7 +205,11 @@ pub fn change(before: &Labels, after: &Labels) -> RegionChange {
         }
     };
     for (k, size) in size_after.iter().enumerate() {
-        let from: Vec<i64> = overlap.keys().filter(|(_, b)| *b as usize == k + 1).map(|(a, _)| size_before[*a as usize - 1]).collect();
+        let from: Vec<i64> = overlap
+            .keys()
+            .filter(|(_, b)| *b as usize == k + 1)
+            .map(|(a, _)| size_before[*a as usize - 1])
+            .collect();
         match from[..] {
             [] => consider(*size, RegionChange::Formed),
             [one] if *size >= one => consider(size - one, RegionChange::Grown),
@@ -199,7 +218,11 @@ pub fn change(before: &Labels, after: &Labels) -> RegionChange {
         }
     }
     for (k, size) in size_before.iter().enumerate() {
-        let to: Vec<i64> = overlap.keys().filter(|(a, _)| *a as usize == k + 1).map(|(_, b)| size_after[*b as usize - 1]).collect();
+        let to: Vec<i64> = overlap
+            .keys()
+            .filter(|(a, _)| *a as usize == k + 1)
+            .map(|(_, b)| size_after[*b as usize - 1])
+            .collect();
         match to[..] {
             [] => consider(*size, RegionChange::Lost),
             [one] if one < *size => consider(size - one, RegionChange::Shrunk),

@@ -1,7 +1,8 @@
 //! Work of the load between equilibria.
 
-/// Jump of the load in a step, relative to its curvature over the step, from which on the load counts as discontinuous. For a load with a limit point
-/// (`F² ∝ Δ`) the cubic is worse than the trapezoid from here on.
+/// Jump of the load in a step, relative to its curvature over the step, from which on the load counts as
+/// discontinuous. For a load with a limit point (`F² ∝ Δ`) the cubic is worse than the trapezoid from here
+/// on.
 pub(crate) const DISCONTINUITY: f64 = 1.0 / 3.0;
 
 /// A point of a loop: mean penetration `Δ`, load `F` and stiffness `dF/dΔ`.
@@ -20,8 +21,8 @@ pub struct OnLoop {
 pub struct Work {
     /// By the trapezoid rule.
     pub straight: f64,
-    /// By how much that of the cubic through loads and slopes at both ends exceeds it (Hermite); 0 where the load jumps and its slope changes by more than
-    /// the load, as at a limit point.
+    /// By how much that of the cubic through loads and slopes at both ends exceeds it (Hermite); 0 where the
+    /// load jumps and its slope changes by more than the load, as at a limit point.
     pub bend: f64,
     /// Largest error of the trapezoid rule where the load jumps in between, which it may do anywhere; else 0.
     pub across: f64,
@@ -43,11 +44,11 @@ pub fn least_between(start: OnLoop, end: OnLoop) -> f64 {
     (0..=SEARCHED_PARTS).map(load).fold(f64::INFINITY, f64::min)
 }
 
-/// The work between two points. The load jumps in between, in events or at a limit point, where it differs from the cubic by more than that from a straight
-/// line.
+/// The work between two points. The load jumps in between, in events or at a limit point, where it differs
+/// from the cubic by more than that from a straight line.
 ///
-/// Many small jumps leave the curvature of the load as it is, and without it all errors have the same sign: `bend` is omitted only where the slopes say
-/// nothing about the load in between.
+/// Many small jumps leave the curvature of the load as it is, and without it all errors have the same sign:
+/// `bend` is omitted only where the slopes say nothing about the load in between.
 #[must_use]
 pub fn work_between(start: OnLoop, end: OnLoop) -> Work {
     let length = end.mean_penetration - start.mean_penetration;

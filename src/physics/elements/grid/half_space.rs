@@ -1,11 +1,13 @@
 //! Periodic grid, elastic half-space operator and their real Fourier transforms.
 //!
-//! The displacement `u` of a half-space under the pressure `p` satisfies `p(q) = (E*/2)|q| u(q)` for every wavevector but zero. Lengths in this module
-//! are in grid spacings and pressures in E*, so the operator is `K = |q|/2` and its elastic energy `½ u·K u` in `E* dx³`.
+//! The displacement `u` of a half-space under the pressure `p` satisfies `p(q) = (E*/2)|q| u(q)` for every
+//! wavevector but zero. Lengths in this module are in grid spacings and pressures in E*, so the operator is
+//! `K = |q|/2` and its elastic energy `½ u·K u` in `E* dx³`.
 //!
-//! On a *patch*, a square of the grid outside of which displacements vanish, the pressure is the same: a convolution with the pressure around one displaced
-//! point. Its transforms have one and a half times the side, so that it is exact up to offsets of half a side. Beyond, displacements near opposite borders
-//! act on one another as at the offset across the border, and these are small in a local relaxation.
+//! On a *patch*, a square of the grid outside of which displacements vanish, the pressure is the same: a
+//! convolution with the pressure around one displaced point. Its transforms have one and a half times the
+//! side, so that it is exact up to offsets of half a side. Beyond, displacements near opposite borders act on
+//! one another as at the offset across the border, and these are small in a local relaxation.
 
 use super::sums::{PANEL, grain, sums};
 use crate::PhysicsError;
@@ -23,8 +25,8 @@ const ADDED_STIFFNESS: f64 = 0.15;
 /// Columns of wavevectors in a block, and rows in a group.
 const BLOCK: usize = 8;
 
-/// A grid of `rows × columns` points with one spacing, periodic or a patch of a periodic one, and the elastic operator on it, in double and in single
-/// precision.
+/// A grid of `rows × columns` points with one spacing, periodic or a patch of a periodic one, and the elastic
+/// operator on it, in double and in single precision.
 pub struct HalfSpace {
     rows: usize,
     columns: usize,
@@ -36,8 +38,8 @@ pub struct HalfSpace {
     single: Plans<f32>,
 }
 
-/// Numbers that fields consist of. In single precision are the search directions and what is computed from them: an error of a direction
-/// delays the minimum and does not move it.
+/// Numbers that fields consist of. In single precision are the search directions and what is computed from
+/// them: an error of a direction delays the minimum and does not move it.
 pub trait Real: FftNum + PartialOrd + Into<f64> {
     /// Transforms in this precision.
     fn plans(half_space: &HalfSpace) -> &Plans<Self>;
@@ -71,7 +73,8 @@ pub struct Plans<T> {
     inverse_row: Arc<dyn ComplexToReal<T>>,
     forward_column: Arc<dyn Fft<T>>,
     inverse_column: Arc<dyn Fft<T>>,
-    /// The operator in the space of wavevectors over the number of points, by columns: `|q|/2` of a periodic grid.
+    /// The operator in the space of wavevectors over the number of points, by columns: `|q|/2` of a periodic
+    /// grid.
     stiffness: Vec<T>,
 }
 
@@ -97,7 +100,11 @@ pub enum Operator {
 }
 
 impl<T: Real> Plans<T> {
-    fn new(rows: usize, columns: usize, of: impl Fn(usize, usize) -> f64 + Sync) -> Result<Self, PhysicsError> {
+    fn new(
+        rows: usize,
+        columns: usize,
+        of: impl Fn(usize, usize) -> f64 + Sync,
+    ) -> Result<Self, PhysicsError> {
         let mut real = RealFftPlanner::<T>::new();
         let mut complex = FftPlanner::<T>::new();
         let blocks = (columns / 2 + 1).div_ceil(BLOCK);
@@ -106,7 +113,8 @@ impl<T: Real> Plans<T> {
         stiffness.par_chunks_mut(rows * BLOCK).enumerate().for_each(|(block, values)| {
             for (k, value) in values.iter_mut().enumerate() {
                 let column = block * BLOCK + k / rows;
-                *value = if column > columns / 2 { T::zero() } else { T::nearest(of(k % rows, column) / points) };
+                *value =
+                    if column > columns / 2 { T::zero() } else { T::nearest(of(k % rows, column) / points) };
             }
         });
         Ok(Self {
@@ -140,7 +148,8 @@ impl HalfSpace {
         })
     }
 
-    /// The grid of a surface and its three mirror images: the surface is the first half of the rows and columns, which are even.
+    /// The grid of a surface and its three mirror images: the surface is the first half of the rows and
+    /// columns, which are even.
     #[must_use]
     pub fn with_images(self) -> Self {
         Self { is_mirrored: true, ..self }
@@ -166,7 +175,8 @@ impl HalfSpace {
         point / self.columns < rows && point % self.columns < columns
     }
 
-    /// Pressure around a unit displacement of one point of a periodic grid, at each offset \[E*/dx\]: `rows × columns` values, row by row.
+    /// Pressure around a unit displacement of one point of a periodic grid, at each offset \[E*/dx\]:
+    /// `rows × columns` values, row by row.
     ///
     /// # Errors
     /// Not enough memory.
@@ -177,7 +187,8 @@ impl HalfSpace {
         Ok(pressure)
     }
 
-    /// Operator on a square of this grid, of at most half its side, with the grid's [`Self::kernel`]. The displacement vanishes outside the square.
+    /// Operator on a square of this grid, of at most half its side, with the grid's [`Self::kernel`]. The
+    /// displacement vanishes outside the square.
     ///
     /// # Errors
     /// Not enough memory.
@@ -242,19 +253,27 @@ impl HalfSpace {
     /// Not enough memory.
     pub fn waves<T: Real>(&self) -> Result<Waves<T>, PhysicsError> {
         let values = self.blocks() * self.height() * BLOCK;
-        Ok(Waves { by_group: filled(values, Complex::zero())?, by_block: filled(values, Complex::zero())?, transforms: 0 })
+        Ok(Waves {
+            by_group: filled(values, Complex::zero())?,
+            by_block: filled(values, Complex::zero())?,
+            transforms: 0,
+        })
     }
 
-    /// Applies an operator to `field` and writes the result to `result`, both of `rows × columns` values, row by row.
+    /// Applies an operator to `field` and writes the result to `result`, both of `rows × columns` values, row
+    /// by row.
     ///
-    /// On a periodic grid the mean of `field` does not matter but to [`Operator::Shifted`]. On a patch the inverse operators are approximate.
+    /// On a periodic grid the mean of `field` does not matter but to [`Operator::Shifted`]. On a patch the
+    /// inverse operators are approximate.
     pub fn apply<T: Real>(&self, operator: Operator, field: &[T], result: &mut [T], waves: &mut Waves<T>) {
         self.forward(waves, field.par_chunks(self.columns), |from, row| row.copy_from_slice(from));
-        self.backward(operator, waves, result.par_chunks_mut(self.columns), |to, row| to.copy_from_slice(row));
+        self.backward(operator, waves, result.par_chunks_mut(self.columns), |to, row| {
+            to.copy_from_slice(row);
+        });
     }
 
-    /// First half of an application: `fill` writes each row of the field, from the item of `rows` for it, and the row is transformed. What `fill` returns,
-    /// in the order of the rows.
+    /// First half of an application: `fill` writes each row of the field, from the item of `rows` for it, and
+    /// the row is transformed. What `fill` returns, in the order of the rows.
     pub(crate) fn forward<T: Real, Row: Send, Part: Send>(
         &self,
         waves: &mut Waves<T>,
@@ -264,9 +283,19 @@ impl HalfSpace {
         let (half, width) = (self.padded.1 / 2 + 1, self.blocks() * BLOCK);
         let plans = T::plans(self);
         waves.transforms += 1;
-        let groups = waves.by_group.par_chunks_mut(width * BLOCK).zip(rows.chunks(BLOCK)).with_min_len(grain(self.columns * BLOCK));
+        let groups = waves
+            .by_group
+            .par_chunks_mut(width * BLOCK)
+            .zip(rows.chunks(BLOCK))
+            .with_min_len(grain(self.columns * BLOCK));
         let parts = groups.map_init(
-            || (plans.forward_row.make_input_vec(), vec![Complex::zero(); width * BLOCK], plans.forward_row.make_scratch_vec()),
+            || {
+                (
+                    plans.forward_row.make_input_vec(),
+                    vec![Complex::zero(); width * BLOCK],
+                    plans.forward_row.make_scratch_vec(),
+                )
+            },
             |(input, lines, scratch), (group, rows)| {
                 let transform = |(line, row): (&mut [Complex<T>], Row)| {
                     let part = fill(row, &mut input[..self.columns]);
@@ -287,8 +316,9 @@ impl HalfSpace {
         parts.flatten_iter().collect()
     }
 
-    /// Second half: the operator, and the transform back, of which `take` is given each row with the item of `rows` for it. What `take` returns, in the
-    /// order of the rows.
+    /// Second half: the operator, and the transform back, of which
+    /// `take` is given each row with the item of `rows` for it. What `take` returns, in the order of the
+    /// rows.
     pub(crate) fn backward<T: Real, Row: Send, Part: Send>(
         &self,
         operator: Operator,
@@ -301,14 +331,25 @@ impl HalfSpace {
         let Waves { by_group, by_block, transforms } = waves;
         *transforms += 1;
         let by_group = tiles(by_group);
-        let chunks = by_block.par_chunks_mut(self.height() * BLOCK).zip(plans.stiffness.par_chunks(self.padded.0 * BLOCK)).enumerate();
+        let chunks = by_block
+            .par_chunks_mut(self.height() * BLOCK)
+            .zip(plans.stiffness.par_chunks(self.padded.0 * BLOCK))
+            .enumerate();
         chunks.with_min_len(grain(self.rows * BLOCK)).for_each_init(
             || self.column_space::<T>(),
-            |space, (block, (waves, stiffness))| self.block(operator, by_group, block, tiles_mut(waves), stiffness, space),
+            |space, (block, (waves, stiffness))| {
+                self.block(operator, by_group, block, tiles_mut(waves), stiffness, space);
+            },
         );
         let by_block = tiles(by_block);
         let parts = rows.chunks(BLOCK).enumerate().with_min_len(grain(self.columns * BLOCK)).map_init(
-            || (vec![Complex::zero(); width * BLOCK], plans.inverse_row.make_scratch_vec(), plans.inverse_row.make_output_vec()),
+            || {
+                (
+                    vec![Complex::zero(); width * BLOCK],
+                    plans.inverse_row.make_scratch_vec(),
+                    plans.inverse_row.make_output_vec(),
+                )
+            },
             |(lines, scratch, output), (group, items)| {
                 for block in 0..self.blocks() {
                     let tile = &by_block[block * self.height() / BLOCK + group];
@@ -344,11 +385,18 @@ impl HalfSpace {
 
     fn column_space<T: Real>(&self) -> ColumnSpace<T> {
         let plans = T::plans(self);
-        let scratch = plans.forward_column.get_inplace_scratch_len().max(plans.inverse_column.get_inplace_scratch_len());
-        ColumnSpace { columns: vec![Complex::zero(); self.stride() * BLOCK], scratch: vec![Complex::zero(); scratch] }
+        let scratch = plans
+            .forward_column
+            .get_inplace_scratch_len()
+            .max(plans.inverse_column.get_inplace_scratch_len());
+        ColumnSpace {
+            columns: vec![Complex::zero(); self.stride() * BLOCK],
+            scratch: vec![Complex::zero(); scratch],
+        }
     }
 
-    /// From one column of a block to the next. With a power of two, all columns would have the same places in the cache.
+    /// From one column of a block to the next. With a power of two, all columns would have the same places in
+    /// the cache.
     fn stride(&self) -> usize {
         self.padded.0.next_multiple_of(BLOCK) + BLOCK
     }
@@ -417,7 +465,11 @@ struct ColumnSpace<T> {
 
 /// Subtracts the mean.
 pub(crate) fn remove_mean<T: Real>(field: &mut [T]) {
-    let [sum] = sums(field.len(), |range, sum| sum[0] += field[range].iter().map(|x| (*x).into()).sum::<f64>());
+    let [sum] =
+        sums(field.len(), |range, sum| sum[0] += field[range].iter().map(|x| (*x).into()).sum::<f64>());
     let mean = T::nearest(sum / field.len() as f64);
-    field.par_chunks_mut(PANEL).with_min_len(grain(PANEL)).for_each(|part| part.iter_mut().for_each(|x| *x = *x - mean));
+    field
+        .par_chunks_mut(PANEL)
+        .with_min_len(grain(PANEL))
+        .for_each(|part| part.iter_mut().for_each(|x| *x = *x - mean));
 }

@@ -7,8 +7,9 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Heights of a periodic square field on `n × n` points of the same square, in the same unit: Fourier interpolation with the wavevectors below both
-/// Nyquist wavenumbers. The first point is the first one of the field.
+/// Heights of a periodic square field on `n × n` points of the same square, in the same unit: Fourier
+/// interpolation with the wavevectors below both Nyquist wavenumbers. The first point is the first one of the
+/// field.
 ///
 /// # Errors
 /// Not enough memory.
@@ -16,11 +17,16 @@ pub fn resample(heights: ArrayView2<'_, f64>, n: usize) -> Result<Array2<f64>, P
     resample_from(heights, n, 0.0)
 }
 
-/// As [`resample`], with the first point at the place `first` along rows and columns, in spacings of the field.
+/// As [`resample`], with the first point at the place `first` along rows and columns, in spacings of the
+/// field.
 ///
 /// # Errors
 /// Not enough memory.
-pub fn resample_from(heights: ArrayView2<'_, f64>, n: usize, first: f64) -> Result<Array2<f64>, PhysicsError> {
+pub fn resample_from(
+    heights: ArrayView2<'_, f64>,
+    n: usize,
+    first: f64,
+) -> Result<Array2<f64>, PhysicsError> {
     let from = heights.nrows();
     if from == n && first == 0.0 {
         return Ok(heights.to_owned());
@@ -57,5 +63,6 @@ fn resample_rows(heights: ArrayView2<'_, f64>, n: usize, first: f64) -> Result<A
         inverse.process(&mut new);
         values.iter_mut().zip(&new).for_each(|(to, value)| *to = value.re / from as f64);
     }
-    Array2::from_shape_vec((rows, n), result).map_err(|error| PhysicsError::Surface { problem: error.to_string(), help: "report this" })
+    Array2::from_shape_vec((rows, n), result)
+        .map_err(|error| PhysicsError::Surface { problem: error.to_string(), help: "report this" })
 }

@@ -22,7 +22,10 @@ pub(crate) fn total<const N: usize>(parts: impl IndexedParallelIterator<Item = [
 }
 
 /// Sums of `N` quantities over all points: `add` adds those of a range, panels are added in their order.
-pub(crate) fn sums<const N: usize>(points: usize, add: impl Fn(std::ops::Range<usize>, &mut [f64; N]) + Sync) -> [f64; N] {
+pub(crate) fn sums<const N: usize>(
+    points: usize,
+    add: impl Fn(std::ops::Range<usize>, &mut [f64; N]) + Sync,
+) -> [f64; N] {
     total((0..points.div_ceil(PANEL)).into_par_iter().map(|panel| {
         let mut sum = [0.0; N];
         add(panel * PANEL..points.min((panel + 1) * PANEL), &mut sum);
@@ -30,10 +33,13 @@ pub(crate) fn sums<const N: usize>(points: usize, add: impl Fn(std::ops::Range<u
     }))
 }
 
-/// Sums over one panel of `N` functions of the values of `M` fields at each point, which vanish where all fields do: runs in single precision, their
-/// sums in double.
+/// Sums over one panel of `N` functions of the values of `M` fields at each point, which vanish where all
+/// fields do: runs in single precision, their sums in double.
 #[inline(always)]
-pub(crate) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of: impl Fn([f32; M]) -> [f32; N]) -> [f64; N] {
+pub(crate) fn panel_sums<const M: usize, const N: usize>(
+    fields: [&[f32]; M],
+    of: impl Fn([f32; M]) -> [f32; N],
+) -> [f64; N] {
     let mut sum = [0.0; N];
     let points = fields[0].len();
     let mut last = [[0.0; LANES]; M];
@@ -44,9 +50,12 @@ pub(crate) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of
             let count = LANES.min(end - start);
             if count < LANES {
                 // The end of the panel, filled up with 0.
-                last.iter_mut().zip(fields).for_each(|(last, field)| last[..count].copy_from_slice(&field[start..end]));
+                last.iter_mut()
+                    .zip(fields)
+                    .for_each(|(last, field)| last[..count].copy_from_slice(&field[start..end]));
             }
-            let at: [&[f32; LANES]; M] = std::array::from_fn(|k| fields[k][start..start + count].try_into().unwrap_or(&last[k]));
+            let at: [&[f32; LANES]; M] =
+                std::array::from_fn(|k| fields[k][start..start + count].try_into().unwrap_or(&last[k]));
             for lane in 0..LANES {
                 let values = of(at.map(|field| field[lane]));
                 for (to, value) in lanes.iter_mut().zip(values) {
@@ -54,7 +63,9 @@ pub(crate) fn panel_sums<const M: usize, const N: usize>(fields: [&[f32]; M], of
                 }
             }
         }
-        sum.iter_mut().zip(lanes).for_each(|(to, lanes)| *to += lanes.into_iter().map(f64::from).sum::<f64>());
+        sum.iter_mut()
+            .zip(lanes)
+            .for_each(|(to, lanes)| *to += lanes.into_iter().map(f64::from).sum::<f64>());
     }
     sum
 }
@@ -73,7 +84,11 @@ pub(crate) fn panel_largest(field: &[f32]) -> f64 {
 
 /// Scalar product.
 pub(crate) fn dot(a: &[f32], b: &[f32]) -> f64 {
-    let [sum] = total((a.par_chunks(PANEL), b.par_chunks(PANEL)).into_par_iter().map(|(a, b)| panel_sums([a, b], |[x, y]| [x * y])));
+    let [sum] = total(
+        (a.par_chunks(PANEL), b.par_chunks(PANEL))
+            .into_par_iter()
+            .map(|(a, b)| panel_sums([a, b], |[x, y]| [x * y])),
+    );
     sum
 }
 
@@ -85,6 +100,7 @@ pub(crate) fn largest(a: &[f32]) -> f64 {
 /// `to ← to + factor × from`.
 pub(crate) fn add(to: &mut [f32], factor: f64, from: &[f32]) {
     let factor = factor as f32;
-    let fields = (to.par_chunks_mut(PANEL), from.par_chunks(PANEL)).into_par_iter().with_min_len(grain(PANEL));
+    let fields =
+        (to.par_chunks_mut(PANEL), from.par_chunks(PANEL)).into_par_iter().with_min_len(grain(PANEL));
     fields.for_each(|(a, b)| a.iter_mut().zip(b).for_each(|(x, y)| *x += factor * y));
 }

@@ -1,22 +1,27 @@
 //! Traction–separation laws of adhesion.
 //!
 //! # Law of the band-limited crack
-//! The front of a crack between a rigid flat and a half-space, at the energy release rate Δγ, has the near-tip field of Irwin (J. Appl. Mech. 24:361, 1957):
-//! the gap `g(x) = 4 sqrt(Δγ x/(πE*))` on the open side (`x > 0`) and the tension `σ(x) = sqrt(E*Δγ/(π|x|))` on the closed side. Convolve both with one
-//! even kernel `W`: the operator `E*|q|/2` is diagonal in
-//! the wavevector, so the convolved fields satisfy it too. If the spectrum of `W` vanishes above the Nyquist wavenumber of a grid, their values at the grid
-//! points satisfy the equations of the grid exactly, at every position of the front between two points and at every orientation.
-//! Eliminating `x` gives a law `σ(g)` under which a straight front has a continuous family of equilibria: no lattice trapping. By the J integral
-//! `∫σ dg = Δγ`.
+//! The front of a crack between a rigid flat and a half-space, at the energy release rate Δγ, has the
+//! near-tip field of Irwin (J. Appl. Mech. 24:361, 1957): the gap `g(x) = 4 sqrt(Δγ x/(πE*))` on the open
+//! side (`x > 0`) and the tension `σ(x) = sqrt(E*Δγ/(π|x|))` on the closed side. Convolve both with one even
+//! kernel `W`: the operator `E*|q|/2` is diagonal in the wavevector, so the convolved fields satisfy it too.
+//! If the spectrum of
+//! `W` vanishes above the Nyquist wavenumber of a grid, their values at the grid points satisfy the equations of the grid exactly, at every position of the front between two points and at every orientation. Eliminating `x`
+//! gives a law
+//! `σ(g)` under which a straight front has a continuous family of equilibria: no lattice trapping. By the J integral `∫σ
+//! dg = Δγ`.
 //!
-//! `W` is a Gaussian of width `s = 0.6` grid spacings. Its spectrum is not 0 but 0.17 at the Nyquist wavenumber, so the last two statements hold
-//! approximately: the trapping that is left is below 1e-3 of Δγ (measured in the tests). In units of `ℓ = sqrt(Δγ dx/E*)` for gaps and
-//! `E* ℓ/dx` for stresses the law does not depend on the material. Its tension rises from 0 at `g = 0` with an infinite slope; that start is
-//! replaced by the spring `σ = k g` with `k = 4 E*/dx`, which is the stiffness of the wall for `g < 0` as well, and the tension beyond is
-//! scaled by a factor near 1 so that `∫σ dg = Δγ` exactly.
+//! `W` is a Gaussian of width `s =
+//! 0.6` grid spacings. Its spectrum is not 0 but 0.17 at the Nyquist wavenumber, so the last two statements hold approximately: the trapping that is left is below 1e-3 of Δγ (measured in the tests). In units of `ℓ
+//! = sqrt(Δγ dx/E*)` for gaps and `E*
+//! ℓ/dx` for stresses the law does not depend on the material. Its tension rises from 0 at `g =
+//! 0` with an infinite slope; that start is replaced by the spring `σ = k g` with `k = 4
+//! E*/dx`, which is the stiffness of the wall for `g <
+//! 0` as well, and the tension beyond is scaled by a factor near 1 so that `∫σ dg = Δγ` exactly.
 //!
 //! # Morse
-//! `V(g) = Δγ (e^(−2g/ρ) − 2e^(−g/ρ))`: attraction of a range ρ, for finite Tabor parameters and comparison with other programs.
+//! `V(g) = Δγ (e^(−2g/ρ) − 2e^(−g/ρ))`: attraction of a range ρ, for finite Tabor parameters and comparison
+//! with other programs.
 
 pub(crate) mod morse;
 
@@ -38,7 +43,8 @@ pub(super) const NEGLIGIBLE_GAP: f64 = 30.0;
 /// Tension at which the table ends, in E*ℓ/dx.
 const END_TENSION: f64 = 1e-7;
 
-/// A law in the pieces that a pass over many points distinguishes, for a free, a bonded and a sealed point \[dx\].
+/// A law in the pieces that a pass over many points distinguishes, for a free, a bonded and a sealed point
+/// \[dx\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pieces {
     /// Stiffness of the spring \[E*/dx\].
@@ -105,8 +111,9 @@ pub struct Morse {
     range: f64,
 }
 
-/// Convolutions of the Gaussian `W` with the fields of the front at the distance `x`: of `√y`, of `1/√y`, and the derivative of the latter to `x`. With
-/// `y = t²` they are `∫₀^∞ 2t² W dt`, `∫₀^∞ 2 W dt` and `∫₀^∞ 2 W' dt`, where `W = W(x − t²)`.
+/// Convolutions of the Gaussian `W` with the fields of the front at the distance `x`: of `√y`, of `1/√y`, and
+/// the derivative of the latter to `x`. With `y = t²` they are `∫₀^∞ 2t² W dt`, `∫₀^∞ 2 W dt` and `∫₀^∞ 2 W'
+/// dt`, where `W = W(x − t²)`.
 fn edge(x: f64) -> [f64; 3] {
     // The integrand is even and entire in t, so that the trapezoid rule converges exponentially.
     let end = (x.max(0.0) + 9.0 * KERNEL_WIDTH).sqrt();
@@ -116,7 +123,8 @@ fn edge(x: f64) -> [f64; 3] {
     for k in 0..=count {
         let t = f64::from(k) * step;
         let off = (x - t * t) / KERNEL_WIDTH;
-        let weight = if k == 0 || k == count { 1.0 } else { 2.0 } * step * (-0.5 * off * off).exp() / (KERNEL_WIDTH * (2.0 * PI).sqrt());
+        let weight = if k == 0 || k == count { 1.0 } else { 2.0 } * step * (-0.5 * off * off).exp()
+            / (KERNEL_WIDTH * (2.0 * PI).sqrt());
         sum[0] += weight * t * t;
         sum[1] += weight;
         sum[2] -= weight * off / KERNEL_WIDTH;
@@ -124,7 +132,8 @@ fn edge(x: f64) -> [f64; 3] {
     sum
 }
 
-/// Gap, tension and the slope `dσ/dg` of the convolved front at the distance `x` (grid spacings) from its edge, in ℓ and E*ℓ/dx.
+/// Gap, tension and the slope `dσ/dg` of the convolved front at the distance `x` (grid spacings) from its
+/// edge, in ℓ and E*ℓ/dx.
 fn front(x: f64) -> [f64; 3] {
     let (ahead, behind) = (edge(x), edge(-x));
     let root = PI.sqrt();
@@ -219,7 +228,9 @@ impl Crack {
         // Hermite's cubic s0 + d0 t + b t² + c t³ and its integral.
         let (b, c) = (3.0 * (s1 - s0) - 2.0 * d0 - d1, 2.0 * (s0 - s1) + d0 + d1);
         Bond {
-            energy: unit * unit * (v0 + TABLE_SPACING * t * (s0 + t * (0.5 * d0 + t * (b / 3.0 + t * 0.25 * c)))),
+            energy: unit
+                * unit
+                * (v0 + TABLE_SPACING * t * (s0 + t * (0.5 * d0 + t * (b / 3.0 + t * 0.25 * c)))),
             tension: unit * (s0 + t * (d0 + t * (b + t * c))),
             slope: (d0 + t * (2.0 * b + t * 3.0 * c)) * NODES_PER_UNIT,
         }
@@ -227,8 +238,8 @@ impl Crack {
 }
 
 impl Morse {
-    /// Below [`MAX_OVERLAP`] ranges of overlap the pressure continues along its tangent. No equilibrium is there, but an iteration may be, and the exponential
-    /// would overflow.
+    /// Below [`MAX_OVERLAP`] ranges of overlap the pressure continues along its tangent. No equilibrium is
+    /// there, but an iteration may be, and the exponential would overflow.
     #[inline(always)]
     fn at(&self, gap: f64) -> Bond {
         let inside = gap.max(-MAX_OVERLAP * self.range);
@@ -237,12 +248,17 @@ impl Morse {
         let unit = self.work / self.range;
         let tension = 2.0 * unit * e * (1.0 - e);
         let slope = 2.0 * unit / self.range * e * (2.0 * e - 1.0);
-        Bond { energy: self.work * e * (e - 2.0) + beyond * (tension + 0.5 * slope * beyond), tension: tension + slope * beyond, slope }
+        Bond {
+            energy: self.work * e * (e - 2.0) + beyond * (tension + 0.5 * slope * beyond),
+            tension: tension + slope * beyond,
+            slope,
+        }
     }
 }
 
 impl Law {
-    /// Law of the band-limited crack for the work of adhesion `work` \[E* dx\]. With 0 only [`Self::wall`] is defined.
+    /// Law of the band-limited crack for the work of adhesion `work` \[E* dx\]. With 0 only [`Self::wall`] is
+    /// defined.
     #[must_use]
     pub fn crack(work: f64) -> Self {
         Self::Crack(Crack::new(work))
@@ -275,7 +291,8 @@ impl Law {
         }
     }
 
-    /// Energy, tension and slope of a point inside a contact, which does not open: the spring of small gaps, continued.
+    /// Energy, tension and slope of a point inside a contact, which does not open: the spring of small gaps,
+    /// continued.
     #[must_use]
     #[inline(always)]
     pub fn sealed(&self, gap: f64) -> Bond {
@@ -287,7 +304,11 @@ impl Law {
             },
             Self::Morse(law) => {
                 let slope = 2.0 * law.work / (law.range * law.range);
-                if gap <= 0.0 { law.at(gap) } else { Bond { energy: 0.5 * slope * gap * gap - law.work, tension: slope * gap, slope } }
+                if gap <= 0.0 {
+                    law.at(gap)
+                } else {
+                    Bond { energy: 0.5 * slope * gap * gap - law.work, tension: slope * gap, slope }
+                }
             }
         }
     }
@@ -323,7 +344,8 @@ impl Law {
         }
     }
 
-    /// Energy, tension and slope of a point that is not bonded: the wall alone, without its energy of adhesion.
+    /// Energy, tension and slope of a point that is not bonded: the wall alone, without its energy of
+    /// adhesion.
     #[must_use]
     #[inline(always)]
     pub fn wall(&self, gap: f64) -> Bond {
@@ -331,7 +353,11 @@ impl Law {
             return Bond::default();
         }
         match self {
-            Self::Crack(_) => Bond { energy: 0.5 * WALL_STIFFNESS * gap * gap, tension: WALL_STIFFNESS * gap, slope: WALL_STIFFNESS },
+            Self::Crack(_) => Bond {
+                energy: 0.5 * WALL_STIFFNESS * gap * gap,
+                tension: WALL_STIFFNESS * gap,
+                slope: WALL_STIFFNESS,
+            },
             Self::Morse(law) => {
                 let bond = law.at(gap);
                 Bond { energy: bond.energy + law.work, ..bond }
@@ -372,7 +398,8 @@ impl Law {
         }
     }
 
-    /// Length over which a solution may change in one iteration \[dx\], so that no energy barrier is passed over.
+    /// Length over which a solution may change in one iteration \[dx\], so that no energy barrier is passed
+    /// over.
     #[must_use]
     pub fn reach(&self) -> f64 {
         match self {

@@ -1,4 +1,5 @@
-//! Morse's law in single precision, without branches, so that the compiler can evaluate it at many points at once.
+//! Morse's law in single precision, without branches, so that the compiler can evaluate it at many points at
+//! once.
 
 /// Overlap in ranges up to which the law is evaluated here.
 const MAX_OVERLAP: f32 = 5.0;
@@ -42,7 +43,8 @@ pub(crate) struct Effect {
 }
 
 impl Smooth {
-    /// Change of the gap by `step` from `before`, with the tension relative to that at `first`, from which the gap has changed by `moved` in all \[dx\].
+    /// Change of the gap by `step` from `before`, with the tension relative to that at
+    /// `first`, from which the gap has changed by `moved` in all \[dx\].
     #[inline(always)]
     pub(crate) fn change(&self, first: f32, before: f32, moved: f32, step: f32) -> Effect {
         let [first, before, moved, step] = [first, before, moved, step].map(|gap| gap * self.inverse_range);
@@ -64,7 +66,8 @@ impl Smooth {
     }
 }
 
-/// `e^(−x)`, to two units in the last place for `x` between −80 and 80: by `2^n e^r` with `|r| ≤ ln 2/2` (Cephes, `expf`).
+/// `e^(−x)`, to two units in the last place for `x` between −80 and 80: by `2^n e^r` with `|r| ≤ ln 2/2`
+/// (Cephes, `expf`).
 #[inline(always)]
 fn decay(x: f32) -> f32 {
     // Adding and subtracting 1.5 · 2²³ rounds to an integer, which is then in the lowest bits.
@@ -73,7 +76,10 @@ fn decay(x: f32) -> f32 {
     let shifted = x * std::f32::consts::LOG2_E + ROUND;
     let n = shifted - ROUND;
     let r = (x - n * 0.693_359_4) + n * 2.121_944_4e-4;
-    let p = ((((1.987_569_1e-4 * r + 1.398_2e-3) * r + 8.333_452e-3) * r + 4.166_579_6e-2) * r + 1.666_666_5e-1) * r + 0.5;
+    let p = ((((1.987_569_1e-4 * r + 1.398_2e-3) * r + 8.333_452e-3) * r + 4.166_579_6e-2) * r
+        + 1.666_666_5e-1)
+        * r
+        + 0.5;
     let power = f32::from_bits((shifted.to_bits() << 23).wrapping_add(0x3f80_0000));
     (p * r * r + r + 1.0) * power
 }
@@ -96,18 +102,26 @@ mod tests {
     /// Energy, tension and slope of Morse's law in double precision.
     fn morse(work: f64, range: f64, gap: f64) -> [f64; 3] {
         let e = (-gap / range).exp();
-        [work * e * (e - 2.0), 2.0 * work / range * e * (1.0 - e), 2.0 * work / (range * range) * e * (2.0 * e - 1.0)]
+        [
+            work * e * (e - 2.0),
+            2.0 * work / range * e * (1.0 - e),
+            2.0 * work / (range * range) * e * (2.0 * e - 1.0),
+        ]
     }
 
-    /// Changes of the gap everywhere: relative to the values at the smaller gap, 1e-6 and the rounding of the gap in ranges (24 bits). The energy beyond first
-    /// order is relative to `t² Δγ e (1 + e)`; its value in double precision is a difference, known to 1e-15.
+    /// Changes of the gap everywhere: relative to the values at the smaller gap, 1e-6 and the rounding of the
+    /// gap in ranges (24 bits). The energy beyond first order is relative to `t² Δγ e (1 + e)`; its value in
+    /// double precision is a difference, known to 1e-15.
     #[test]
     fn law_morse_in_single_precision() {
         let (work, range) = (0.02, 0.11);
         let smooth = Smooth { work: work as f32, inverse_range: 1.0 / range as f32 };
         let mut count = 0;
-        for (i, j, earlier) in (0..400).flat_map(|i| (-20..=20).flat_map(move |j| [(i, j, 0.0), (i, j, 0.2), (i, j, 1.5)])) {
-            let gaps = [earlier, f64::from(i) * 0.25 - 3.0, f64::from(j) / 20.0].map(|gap| f64::from((gap * range) as f32));
+        for (i, j, earlier) in
+            (0..400).flat_map(|i| (-20..=20).flat_map(move |j| [(i, j, 0.0), (i, j, 0.2), (i, j, 1.5)]))
+        {
+            let gaps = [earlier, f64::from(i) * 0.25 - 3.0, f64::from(j) / 20.0]
+                .map(|gap| f64::from((gap * range) as f32));
             let [earlier, before, step] = gaps;
             let first = before - earlier;
             let [[_, tension_at_first, _], [energy, tension_before, _], after] =
@@ -122,9 +136,15 @@ mod tests {
             assert!(found.holds);
             let path = ((earlier + step) / range).abs().min(1.0);
             let largest = scale.max(work * (-first / range).exp() * (1.0 + (-first / range).exp()));
-            assert!(tension.abs() < tolerance * 2.0 * path * largest / range + 1e-15 * work / range, "{gaps:?}: {tension}");
+            assert!(
+                tension.abs() < tolerance * 2.0 * path * largest / range + 1e-15 * work / range,
+                "{gaps:?}: {tension}"
+            );
             assert!(slope.abs() < tolerance * 4.0 * scale / (range * range) + 1e-30, "{gaps:?}: {slope}");
-            assert!(beyond.abs() < tolerance * (step / range).powi(2) * scale + 2e-15 * (scale + work), "{gaps:?}: {beyond}");
+            assert!(
+                beyond.abs() < tolerance * (step / range).powi(2) * scale + 2e-15 * (scale + work),
+                "{gaps:?}: {beyond}"
+            );
             count += 1;
         }
         assert_eq!(count, 49_200);

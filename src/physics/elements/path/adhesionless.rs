@@ -19,7 +19,8 @@ pub struct FreeStep {
     pub converged: bool,
 }
 
-/// Loads a problem without attraction in steps of the mean penetration \[dx\] until `enough` is true for the steps so far, or all points are in contact.
+/// Loads a problem without attraction in steps of the mean penetration \[dx\] until `enough` is true for the
+/// steps so far, or all points are in contact.
 ///
 /// # Errors
 /// Not enough memory.
@@ -38,7 +39,12 @@ pub fn load_freely(
         let outcome = equilibrium.find(problem, &mut state, accuracy)?;
         let totals = problem.totals(&state);
         let transforms = equilibrium.transforms(transformed);
-        steps.push(FreeStep { mean_penetration: state.mean_penetration, totals, transforms, converged: outcome.converged });
+        steps.push(FreeStep {
+            mean_penetration: state.mean_penetration,
+            totals,
+            transforms,
+            converged: outcome.converged,
+        });
         if totals.contact == problem.half_space.points() || enough(&steps) {
             return Ok(steps);
         }

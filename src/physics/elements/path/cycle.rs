@@ -1,4 +1,5 @@
-//! Loading and unloading under displacement control, by [steps](super::step) from first contact to the last separation.
+//! Loading and unloading under displacement control, by [steps](super::step) from first contact to the last
+//! separation.
 
 pub use super::records::{Cycle, Event, Map, Step, Turning};
 use super::stations::{MAX_MAP_SIDE, of_loading, of_unloading};
@@ -10,12 +11,12 @@ use crate::elements::events::regions::{Region, label};
 use crate::elements::problem::{Attraction, Problem};
 use crate::{LoopError, LoopPosition, PhysicsError};
 
-/// Loads to the largest of the loads and unloads from each, from the beginning or from a checkpoint. After each step `keep` is given what is needed to
-/// continue from there, and `progress` the position.
+/// Loads to the largest of the loads and unloads from each, from the beginning or from a checkpoint. After
+/// each step `keep` is given what is needed to continue from there, and `progress` the position.
 ///
 /// # Errors
-/// Not enough memory; and if no load reversal has a result: a load that is not reached, full contact that does not open, surfaces that do not separate,
-/// steps that do not resolve the dissipated energy.
+/// Not enough memory; and if no load reversal has a result: a load that is not reached, full contact that
+/// does not open, surfaces that do not separate, steps that do not resolve the dissipated energy.
 pub fn run(
     problem: &Problem,
     settings: &Settings,
@@ -31,11 +32,17 @@ pub fn run(
     })
 }
 
-/// Unloads from a state at a load reversal: the steps, events, regions and maps that [`run`] has from there, numbered from 0.
+/// Unloads from a state at a load reversal: the steps, events, regions and maps that [`run`] has from there,
+/// numbered from 0.
 ///
 /// # Errors
 /// Not enough memory; surfaces that do not separate.
-pub fn unload_from(problem: &Problem, settings: &Settings, reversal: usize, turning: &Turning) -> Result<Cycle, PhysicsError> {
+pub fn unload_from(
+    problem: &Problem,
+    settings: &Settings,
+    reversal: usize,
+    turning: &Turning,
+) -> Result<Cycle, PhysicsError> {
     rayon::scope(|_| {
         let mut run = CycleRun::new(problem, settings, None)?;
         run.at.cycle = Cycle { turning: vec![turning.clone(); reversal + 1], ..Cycle::default() };
@@ -53,7 +60,11 @@ impl BranchRun for CycleRun<'_> {
         self.at.cycle.turning.len()
     }
 
-    fn advance(&mut self, reversal: Option<usize>, progress: &dyn Fn(LoopPosition)) -> Result<bool, PhysicsError> {
+    fn advance(
+        &mut self,
+        reversal: Option<usize>,
+        progress: &dyn Fn(LoopPosition),
+    ) -> Result<bool, PhysicsError> {
         match reversal {
             None => self.load(progress),
             Some(reversal) => self.unload(reversal, progress),
@@ -65,10 +76,17 @@ impl BranchRun for CycleRun<'_> {
         let cycle = &self.at.cycle;
         let energies = |step: &Step| (step.work, step.dissipated);
         let back = cycle.steps.iter().rev().filter(|step| step.reversal == Some(reversal));
-        let energy = LoopEnergy::of(cycle.steps[..=cycle.turning[reversal].step].iter().map(energies), back.map(energies));
+        let energy = LoopEnergy::of(
+            cycle.steps[..=cycle.turning[reversal].step].iter().map(energies),
+            back.map(energies),
+        );
         let LoopEnergy { loss_j, events_j, work_j } = energy;
         let max_load = self.settings.max_loads[reversal];
-        if energy.is_sound() { Ok(()) } else { Err(LoopError::UnresolvedLoop { max_load, loss_j, events_j, work_j }) }
+        if energy.is_sound() {
+            Ok(())
+        } else {
+            Err(LoopError::UnresolvedLoop { max_load, loss_j, events_j, work_j })
+        }
     }
 
     fn forget(&mut self, reversal: usize) {
@@ -87,7 +105,9 @@ impl CycleRun<'_> {
             return Ok(false);
         }
         let last = self.settings.max_loads.last().copied().unwrap_or(0.0);
-        let Some(wanted) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() else { return Ok(true) };
+        let Some(wanted) = self.settings.max_loads.get(self.at.cycle.turning.len()).copied() else {
+            return Ok(true);
+        };
         self.return_to_path();
         let is_reached = self.advance_step(1.0, Some(wanted))?;
         let (reached, mean_penetration_m) = (self.at.last.totals.load, self.at.last.mean_penetration);
@@ -111,13 +131,19 @@ impl CycleRun<'_> {
     /// Position on the loop, of which a fraction is done.
     fn position(&self, done: f64) -> LoopPosition {
         let load = self.at.last.totals.load / self.problem.half_space.points() as f64;
-        LoopPosition { done, steps: self.at.cycle.steps.len(), unloading: self.at.last.reversal.is_some(), load }
+        LoopPosition {
+            done,
+            steps: self.at.cycle.steps.len(),
+            unloading: self.at.last.reversal.is_some(),
+            load,
+        }
     }
 
-    /// Magnitude of the mean penetration beyond which the search for a load or for the last separation ends \[dx\]: attraction of a range begins and ends at
-    /// the end of its law.
+    /// Magnitude of the mean penetration beyond which the search for a load or for the last separation ends
+    /// \[dx\]: attraction of a range begins and ends at the end of its law.
     fn farthest(&self) -> f64 {
-        let acts = if self.problem.attraction == Attraction::Range { self.problem.law.end_gap() } else { 0.0 };
+        let acts =
+            if self.problem.attraction == Attraction::Range { self.problem.law.end_gap() } else { 0.0 };
         self.problem.numerics.steps.farthest * self.problem.range() + 2.0 * acts
     }
 
@@ -128,20 +154,24 @@ impl CycleRun<'_> {
 
     /// True in full contact that does not open, since contact opens at edges only.
     fn is_closed(&self) -> bool {
-        self.is_full() && matches!(self.problem.attraction, Attraction::Bonded { strength: f64::INFINITY, .. })
+        self.is_full()
+            && matches!(self.problem.attraction, Attraction::Bonded { strength: f64::INFINITY, .. })
     }
 
-    /// Load of full contact at which the largest tension is the strength \[E* dx²\]; none elsewhere, and where the law alone decides.
+    /// Load of full contact at which the largest tension is the strength \[E* dx²\]; none elsewhere, and
+    /// where the law alone decides.
     ///
-    /// In full contact the mean gap is constant and tension is added uniformly, until a nucleus opens at the place of the largest tension. The grid resolves a
-    /// nucleus from its own strength on only, so that the load before is computed here and is no equilibrium on it.
+    /// In full contact the mean gap is constant and tension is added uniformly, until a nucleus opens at the
+    /// place of the largest tension. The grid resolves a nucleus from its own strength on only, so that the
+    /// load before is computed here and is no equilibrium on it.
     fn opening_load(&self) -> Option<f64> {
         let Attraction::Bonded { strength, .. } = self.problem.attraction else { return None };
         if !self.is_full() || strength <= 0.0 || strength.is_infinite() {
             return None;
         }
         let points = self.problem.half_space.points();
-        let tension = |k: usize| self.problem.bond(self.at.state.bonds[k], self.problem.gap(&self.at.state, k)).tension;
+        let tension =
+            |k: usize| self.problem.bond(self.at.state.bonds[k], self.problem.gap(&self.at.state, k)).tension;
         let largest = (0..points).map(tension).fold(f64::NEG_INFINITY, f64::max);
         Some(self.at.last.totals.load - points as f64 * (strength - largest).max(0.0))
     }
@@ -174,7 +204,8 @@ impl CycleRun<'_> {
         self.keep_max_tension();
         self.keep_between();
         let branches = self.settings.max_loads.len() as f64;
-        let done = 0.5 + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches;
+        let done = 0.5
+            + 0.5 * (reversal as f64 + 1.0 - (self.at.last.totals.contact as f64 / full).min(1.0)) / branches;
         progress(self.position(done));
         Ok(false)
     }
@@ -208,7 +239,12 @@ impl CycleRun<'_> {
         let is_first = match last.reversal {
             None => {
                 let passed = |step: &Step| of_loading(step.totals.load, loads.last().copied().unwrap_or(0.0));
-                let kept = cycle.between.iter().map(|map| &cycle.steps[map.step]).filter(|step| step.reversal.is_none()).map(passed);
+                let kept = cycle
+                    .between
+                    .iter()
+                    .map(|map| &cycle.steps[map.step])
+                    .filter(|step| step.reversal.is_none())
+                    .map(passed);
                 passed(last) > kept.max().unwrap_or(0)
             }
             Some(reversal) => {
@@ -235,7 +271,9 @@ impl CycleRun<'_> {
     fn map(&self, step: usize, stride: usize) -> Map {
         let (state, half_space) = (&self.at.state, &self.problem.half_space);
         let (rows, columns) = (half_space.rows(), half_space.columns());
-        let points = || (0..rows).step_by(stride).flat_map(|i| (0..columns).step_by(stride).map(move |j| i * columns + j));
+        let points = || {
+            (0..rows).step_by(stride).flat_map(|i| (0..columns).step_by(stride).map(move |j| i * columns + j))
+        };
         let tension = |k| self.problem.bond(state.bonds[k], self.problem.gap(state, k)).tension;
         let gap = points().map(|k| self.problem.gap(state, k) as f32).collect();
         Map { step, stride, gap, pressure: points().map(|k| -tension(k) as f32).collect() }
@@ -244,8 +282,11 @@ impl CycleRun<'_> {
     fn is_apart(&self) -> bool {
         let range = self.problem.attraction == Attraction::Range;
         // Bonds end beyond the end of the law, where the load vanishes.
-        let ended =
-            if range { self.at.state.mean_penetration <= -self.problem.law.end_gap() } else { self.problem.is_free(&self.at.state) };
+        let ended = if range {
+            self.at.state.mean_penetration <= -self.problem.law.end_gap()
+        } else {
+            self.problem.is_free(&self.at.state)
+        };
         self.at.last.totals.contact == 0 && ended
     }
 }

@@ -19,22 +19,26 @@ pub struct Step {
     pub stiffness: f64,
     /// Connected regions of contact.
     pub regions: usize,
-    /// Energy dissipated in events since the step before \[E* dx³\]: the sum of `∫F dΔ − ΔΠ` since the last event, if that exceeds its uncertainty.
+    /// Energy dissipated in events since the step before \[E* dx³\]: the sum of `∫F dΔ − ΔΠ` since the last
+    /// event, if that exceeds its uncertainty.
     pub dissipated: f64,
     /// `∫F dΔ − ΔΠ` since the step before \[E* dx³\], its error included.
     pub imbalance: f64,
-    /// Energy dissipated since the last event and not counted as one, or, if negative, gained by errors of the integral \[E* dx³\].
+    /// Energy dissipated since the last event and not counted as one, or, if negative, gained by errors of
+    /// the integral \[E* dx³\].
     pub pending: f64,
-    /// Estimated error of that integral \[E* dx³\]: a part of the difference between the cubic through loads and stiffnesses and the trapezoid, or of the error
-    /// that a jump of the load may cause.
+    /// Estimated error of that integral \[E* dx³\]: a part of the difference between the cubic through loads
+    /// and stiffnesses and the trapezoid, or of the error that a jump of the load may cause.
     pub uncertainty: f64,
     /// Work `∫F dΔ` since the branch began \[E* dx³\].
     pub work: f64,
     /// Iterations on the whole grid, those of discarded longer steps included.
     pub iterations: u64,
-    /// Real transforms of the grid, those of halved steps included; transforms of patches count by their points.
+    /// Real transforms of the grid, those of halved steps included; transforms of patches count by their
+    /// points.
     pub transforms: u64,
-    /// Root mean square of the residual, relative to the maximum tension, and without adhesion to the height range over the side.
+    /// Root mean square of the residual, relative to the maximum tension, and without adhesion to the height
+    /// range over the side.
     pub residual: f64,
     /// True if the accuracy was reached.
     pub converged: bool,
@@ -96,10 +100,12 @@ pub struct Cycle {
     pub between: Vec<Map>,
     /// States at the load reversals.
     pub turning: Vec<Turning>,
-    /// Load reversals without a result, by their place in the settings, with the error in the units of the solver.
+    /// Load reversals without a result, by their place in the settings, with the error in the units of the
+    /// solver.
     #[serde(skip)]
     pub unreached: Vec<(usize, LoopError)>,
-    /// Steps between which and the one before the load was smaller than at both, with that load \[E* dx²\]: full contact before it opens.
+    /// Steps between which and the one before the load was smaller than at both, with that load \[E* dx²\]:
+    /// full contact before it opens.
     pub least_loads: Vec<(usize, f64)>,
 }
 

@@ -11,12 +11,14 @@ impl CycleRun<'_> {
         (load / max_load - 1.0).abs() < self.problem.numerics.reversal.jump_tolerance
     }
 
-    /// The equilibrium at `max_load` between the last state and a step `beyond` it, or after a jump of the load across it. States of a smaller load on the
-    /// way are steps of the path, so that each equilibrium is near the last one. None if the load falls on this way and does not reach `max_load`.
+    /// The equilibrium at `max_load` between the last state and a step `beyond` it, or after a jump of the
+    /// load across it. States of a smaller load on the way are steps of the path, so that each equilibrium is
+    /// near the last one. None if the load falls on this way and does not reach `max_load`.
     pub(crate) fn reach(&mut self, max_load: f64, beyond: Step) -> Result<Option<Attempt>, PhysicsError> {
         let limits = self.problem.numerics.reversal;
         let Accuracy { rms, largest, iterations } = self.settings.accuracy;
-        let sharper = Accuracy { rms: limits.precision * rms, largest: limits.precision * largest, iterations };
+        let sharper =
+            Accuracy { rms: limits.precision * rms, largest: limits.precision * largest, iterations };
         let off = |load: f64| (load / max_load - 1.0).abs();
         let mut high = (beyond.mean_penetration, beyond.totals.load);
         for searched in 1_u32.. {
@@ -27,7 +29,8 @@ impl CycleRun<'_> {
             let part = if searched.is_multiple_of(3) { 0.5 } else { secant };
             let mean_penetration = if closed { high.0 } else { low.0 + part * (high.0 - low.0) };
             let near = closed || off(low.1).min(off(high.1)) < limits.precise_within;
-            let mut attempt = self.attempt(mean_penetration, if near { sharper } else { self.settings.accuracy })?;
+            let mut attempt =
+                self.attempt(mean_penetration, if near { sharper } else { self.settings.accuracy })?;
             let load = attempt.step.totals.load;
             let reached = off(load) < limits.load_tolerance;
             let jumps = closed && load > max_load;

@@ -1,15 +1,16 @@
 //! Steps of a branch whose maps are kept, besides those at its ends.
 //!
-//! Loading has the first steps at or above 1/10, 2/10, … 9/10 of the largest load. Unloading has the first steps at or below 4/5, 3/5, … 0 of the load of its
-//! reversal, and then those at which the contact area is at or below 5/6, 4/6, … 1/6 of that at zero load.
+//! Loading has the first steps at or above 1/10, 2/10, … 9/10 of the largest load. Unloading has the first
+//! steps at or below 4/5, 3/5, … 0 of the load of its reversal, and then those at which the contact area is
+//! at or below 5/6, 4/6, … 1/6 of that at zero load.
 
 use super::records::Step;
 
 /// Stations of loading, and of the compressive and the tensile part of unloading.
 pub(crate) const MAP_STATIONS: [usize; 3] = [9, 5, 5];
 
-/// Maximum number of points along a side of the maps of these steps: of larger grids they have every second, third, … point. Each map has 8 bytes for each point, in memory
-/// and in each checkpoint.
+/// Maximum number of points along a side of the maps of these steps: of larger grids they have every second,
+/// third, … point. Each map has 8 bytes for each point, in memory and in each checkpoint.
 pub(crate) const MAX_MAP_SIDE: usize = 256;
 
 /// Stations of loading that have been passed at a load.
@@ -29,8 +30,15 @@ pub(crate) fn of_unloading<'a>(steps: impl Iterator<Item = &'a Step>, max_load: 
             at_zero = Some(area);
         }
         let now = match at_zero {
-            None => (1..=compressive).filter(|k| load <= (1.0 - *k as f64 / compressive as f64) * max_load).count(),
-            Some(whole) => compressive + (1..=tensile).filter(|k| area <= (1.0 - *k as f64 / (tensile + 1) as f64) * whole).count(),
+            None => (1..=compressive)
+                .filter(|k| load <= (1.0 - *k as f64 / compressive as f64) * max_load)
+                .count(),
+            Some(whole) => {
+                compressive
+                    + (1..=tensile)
+                        .filter(|k| area <= (1.0 - *k as f64 / (tensile + 1) as f64) * whole)
+                        .count()
+            }
         };
         passed = passed.max(now);
         passed
@@ -48,8 +56,21 @@ mod tests {
         // Of the load 10: 1, 2, … 9 are stations of loading.
         assert_eq!([-1.0, 0.9, 1.0, 5.5, 9.0, 10.0].map(|load| of_loading(load, 10.0)), [0, 0, 1, 5, 9, 9]);
         // Unloading: 8, 6, 4, 2 and 0, then areas of 100 points and less of 120.
-        let step = |load: f64, contact: usize| Step { totals: Totals { load, contact, ..Totals::default() }, ..Step::default() };
-        let steps = [(9.0, 400), (8.0, 300), (3.0, 200), (-1.0, 120), (0.5, 110), (-2.0, 100), (-3.0, 39), (-1.0, 60), (0.0, 0)];
+        let step = |load: f64, contact: usize| Step {
+            totals: Totals { load, contact, ..Totals::default() },
+            ..Step::default()
+        };
+        let steps = [
+            (9.0, 400),
+            (8.0, 300),
+            (3.0, 200),
+            (-1.0, 120),
+            (0.5, 110),
+            (-2.0, 100),
+            (-3.0, 39),
+            (-1.0, 60),
+            (0.0, 0),
+        ];
         let steps = steps.map(|(load, contact)| step(load, contact));
         assert_eq!(of_unloading(steps.iter(), 10.0), [0, 1, 3, 5, 5, 6, 9, 9, 10]);
     }

@@ -1,13 +1,16 @@
-//! One step of a cycle: an equilibrium at a mean penetration near the one before, and the energy dissipated in between.
+//! One step of a cycle: an equilibrium at a mean penetration near the one before, and the energy dissipated
+//! in between.
 //!
-//! Between events the states are a continuous curve on which `F = dΠ/dΔ`, so that `∫F dΔ − ΔΠ` vanishes; in an event the energy falls at one mean
-//! penetration, by the energy dissipated. The integral has errors of both signs. An event is therefore counted where the sum of `∫F dΔ − ΔΠ` since the last
-//! one exceeds its uncertainty, and an apparent gain is subtracted from the next event. A gain must not shorten the step: repeating what comes out too small
-//! makes the sum too large.
+//! Between events the states are a continuous curve on which `F = dΠ/dΔ`, so that `∫F dΔ − ΔΠ` vanishes; in
+//! an event the energy falls at one mean penetration, by the energy dissipated. The integral has errors of
+//! both signs. An event is therefore counted where the sum of `∫F dΔ − ΔΠ` since the last one exceeds its
+//! uncertainty, and an apparent gain is subtracted from the next event. A gain must not shorten the step:
+//! repeating what comes out too small makes the sum too large.
 //!
-//! A step is halved where a jump of the load makes its integral uncertain by more than [`Settings::jump_tolerance`]. It is also halved where the load may
-//! have passed through the maximum tension, before a jump or, with attraction of a range, smoothly. The next steps are as short, until the uncertainty is
-//! well below the limit.
+//! A step is halved where a jump of the load makes its integral uncertain by more than
+//! [`Settings::jump_tolerance`]. It is also halved where the load may have passed through the maximum
+//! tension, before a jump or, with attraction of a range, smoothly. The next steps are as short, until the
+//! uncertainty is well below the limit.
 
 use super::records::{Cycle, Event, Map, Step};
 use crate::PhysicsError;
@@ -30,7 +33,8 @@ pub struct Settings {
     pub max_loads: Vec<f64>,
     /// Step of the mean penetration \[dx\].
     pub step: f64,
-    /// Largest error that a jump of the load may cause in the integral over a step, relative to the energy dissipated so far: longer steps are halved.
+    /// Largest error that a jump of the load may cause in the integral over a step, relative to the energy
+    /// dissipated so far: longer steps are halved.
     pub jump_tolerance: f64,
     /// Most halvings of such a step.
     pub halvings: u32,
@@ -65,7 +69,8 @@ pub struct Checkpoint {
     pub(crate) owed: f64,
 }
 
-/// A state of the loading path, to which it returns from a load reversal. Smaller loads of a spec do not change the path to the larger ones.
+/// A state of the loading path, to which it returns from a load reversal. Smaller loads of a spec do not
+/// change the path to the larger ones.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Trunk {
     state: State,
@@ -107,7 +112,11 @@ pub(crate) struct CycleRun<'a> {
 
 impl<'a> CycleRun<'a> {
     /// A cycle from the beginning or from a checkpoint.
-    pub(crate) fn new(problem: &'a Problem, settings: &'a Settings, checkpoint: Option<Checkpoint>) -> Result<Self, PhysicsError> {
+    pub(crate) fn new(
+        problem: &'a Problem,
+        settings: &'a Settings,
+        checkpoint: Option<Checkpoint>,
+    ) -> Result<Self, PhysicsError> {
         let start = match problem.attraction {
             Attraction::Bonded { nucleation, .. } => -nucleation,
             Attraction::Range => -problem.law.end_gap(),
@@ -145,8 +154,13 @@ impl<'a> CycleRun<'a> {
         regions(self.problem, &self.at.state, &self.at.labels, &self.settings.summits)
     }
 
-    /// Equilibrium at a mean penetration, from the last state extrapolated, with all contacts that form there.
-    pub(crate) fn attempt(&mut self, mean_penetration: f64, accuracy: Accuracy) -> Result<Attempt, PhysicsError> {
+    /// Equilibrium at a mean penetration, from the last state extrapolated, with all contacts that form
+    /// there.
+    pub(crate) fn attempt(
+        &mut self,
+        mean_penetration: f64,
+        accuracy: Accuracy,
+    ) -> Result<Attempt, PhysicsError> {
         let mut state = self.predict(mean_penetration)?;
         let outcome = self.relax(&mut state, accuracy, &ANY)?;
         self.conclude(state, outcome)
@@ -154,7 +168,8 @@ impl<'a> CycleRun<'a> {
 
     /// The last state extrapolated.
     fn predict(&mut self, mean_penetration: f64) -> Result<State, PhysicsError> {
-        let mut state = State { pressure: filled(self.problem.half_space.points(), 0.0)?, ..self.at.state.clone() };
+        let mut state =
+            State { pressure: filled(self.problem.half_space.points(), 0.0)?, ..self.at.state.clone() };
         let rate = match self.rate.take() {
             Some(rate) => rate,
             None => {
@@ -164,8 +179,8 @@ impl<'a> CycleRun<'a> {
                 rate
             }
         };
-        let length =
-            (mean_penetration - state.mean_penetration) * (self.problem.numerics.steps.max_rate / largest(&rate.displacement)).min(1.0);
+        let length = (mean_penetration - state.mean_penetration)
+            * (self.problem.numerics.steps.max_rate / largest(&rate.displacement)).min(1.0);
         for (to, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
             *to += length * f64::from(*rate);
         }
@@ -186,8 +201,14 @@ impl<'a> CycleRun<'a> {
         }
     }
 
-    /// Moves a state to the equilibrium at its mean penetration, unless an event takes the load out of `loads`.
-    fn relax(&mut self, state: &mut State, accuracy: Accuracy, loads: &Loads) -> Result<Outcome, PhysicsError> {
+    /// Moves a state to the equilibrium at its mean penetration, unless an event takes the load out of
+    /// `loads`.
+    fn relax(
+        &mut self,
+        state: &mut State,
+        accuracy: Accuracy,
+        loads: &Loads,
+    ) -> Result<Outcome, PhysicsError> {
         loop {
             let outcome = self.equilibrium.find_within(self.problem, state, accuracy, loads)?;
             self.iterations += outcome.iterations as u64;
@@ -203,7 +224,12 @@ impl<'a> CycleRun<'a> {
         self.problem.settle_bonds(&mut state);
         let rate = self.equilibrium.rate(self.problem, &state)?;
         let (from, limits) = (&self.at.last, &self.problem.numerics.steps);
-        let reached = Step { mean_penetration: state.mean_penetration, totals, stiffness: rate.stiffness, ..Step::default() };
+        let reached = Step {
+            mean_penetration: state.mean_penetration,
+            totals,
+            stiffness: rate.stiffness,
+            ..Step::default()
+        };
         let Work { straight, bend, across } = work_between(on_loop(from), on_loop(&reached));
         let work = straight + bend;
         let imbalance = work - (totals.energy - from.totals.energy);
@@ -255,8 +281,9 @@ impl<'a> CycleRun<'a> {
         self.at.cycle.steps.push(step);
     }
 
-    /// Part of a dissipated energy that no step of the table has. A search for a load reversal is in the table between two steps of the path, and what it has
-    /// dissipated is a part of what the path dissipates there.
+    /// Part of a dissipated energy that no step of the table has. A search for a load reversal is in the
+    /// table between two steps of the path, and what it has dissipated is a part of what the path dissipates
+    /// there.
     fn not_yet_counted(&mut self, found: f64) -> f64 {
         if self.at.trunk.is_some() {
             self.at.owed += found;
@@ -267,27 +294,37 @@ impl<'a> CycleRun<'a> {
         (found - owed).max(0.0)
     }
 
-    /// Notes the state of the loading path before the search for the reversal at a load, unless the path ends there.
+    /// Notes the state of the loading path before the search for the reversal at a load, unless the path ends
+    /// there.
     fn leave_path(&mut self, max_load: f64) {
         if self.settings.max_loads.last().is_none_or(|last| *last <= max_load) {
             return;
         }
         let Checkpoint { cycle, state, last, dissipated, level, owed, .. } = &self.at;
         let (steps, events) = (cycle.steps.len(), cycle.events.len());
-        let trunk = Trunk { state: state.clone(), last: *last, dissipated: *dissipated, level: *level, steps, events, owed: *owed };
+        let trunk = Trunk {
+            state: state.clone(),
+            last: *last,
+            dissipated: *dissipated,
+            level: *level,
+            steps,
+            events,
+            owed: *owed,
+        };
         self.at.trunk = Some(Box::new(trunk));
     }
 
     /// Returns to the loading path after the search for a load reversal.
     pub(crate) fn return_to_path(&mut self) {
         let Some(trunk) = self.at.trunk.take() else { return };
-        (self.at.state, self.at.last, self.at.dissipated, self.at.level) = (trunk.state, trunk.last, trunk.dissipated, trunk.level);
+        (self.at.state, self.at.last, self.at.dissipated, self.at.level) =
+            (trunk.state, trunk.last, trunk.dissipated, trunk.level);
         self.at.labels = label(self.problem, &self.at.state);
         self.rate = None;
     }
 
-    /// Discards the steps of a search that has not found the load: the reversal is then the attempt `beyond` the jump of
-    /// the load.
+    /// Discards the steps of a search that has not found the load: the reversal is then the attempt `beyond`
+    /// the jump of the load.
     fn reverse_beyond(&mut self, mut beyond: Attempt, max_load: f64) {
         let Some(trunk) = self.at.trunk.clone() else { return };
         let (steps, events, owed) = (trunk.steps, trunk.events, trunk.owed);
@@ -301,7 +338,8 @@ impl<'a> CycleRun<'a> {
         self.accept(beyond);
     }
 
-    /// Advances by one step, which is halved where a jump of the load is not located, and ends at `max_load` if it would cross it. True if it ends there.
+    /// Advances by one step, which is halved where a jump of the load is not located, and ends at `max_load`
+    /// if it would cross it. True if it ends there.
     pub(crate) fn advance_step(&mut self, sense: f64, max_load: Option<f64>) -> Result<bool, PhysicsError> {
         loop {
             let halvings = self.halvings();
@@ -309,7 +347,8 @@ impl<'a> CycleRun<'a> {
             let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
             let limit = self.settings.jump_tolerance * self.at.dissipated;
             let mut state = self.predict(self.at.state.mean_penetration + length)?;
-            let outcome = self.relax(&mut state, self.settings.accuracy, &self.loads_within_tolerance(length, limit))?;
+            let outcome =
+                self.relax(&mut state, self.settings.accuracy, &self.loads_within_tolerance(length, limit))?;
             if outcome.left {
                 self.at.level += 1;
                 continue;
@@ -339,12 +378,14 @@ impl<'a> CycleRun<'a> {
 
     /// Most halvings of the next step.
     fn halvings(&self) -> u32 {
-        let is_spent = self.problem.attraction == Attraction::Range && self.at.cycle.steps.len() > self.problem.numerics.steps.halved_steps;
+        let is_spent = self.problem.attraction == Attraction::Range
+            && self.at.cycle.steps.len() > self.problem.numerics.steps.halved_steps;
         if is_spent { 0 } else { self.settings.halvings }
     }
 
-    /// Loads after a step of a length that need not be halved. Beyond them, the error of a jump exceeds the limit so far that the rest of the event does not
-    /// matter, and the load has changed by more than its slope can do in this step; or it has jumped up from a maximum tension. All loads as long as nothing
+    /// Loads after a step of a length that need not be halved. Beyond them, the error of a jump exceeds the
+    /// limit so far that the rest of the event does not matter, and the load has changed by more than its
+    /// slope can do in this step; or it has jumped up from a maximum tension. All loads as long as nothing
     /// has been dissipated.
     fn loads_within_tolerance(&self, length: f64, limit: f64) -> Loads {
         if self.at.level == self.halvings() || limit == 0.0 {
@@ -352,28 +393,37 @@ impl<'a> CycleRun<'a> {
         }
         let from = self.at.last.totals.load;
         let expected = self.extrapolated_load(length);
-        let room = (2.0 * self.problem.numerics.steps.early_end_error * limit / length.abs()).max((expected - from).abs());
+        let room = (2.0 * self.problem.numerics.steps.early_end_error * limit / length.abs())
+            .max((expected - from).abs());
         let most = if self.exceeds_max_tension(expected) { from } else { f64::INFINITY };
         expected - room..(expected + room).min(most)
     }
 
-    /// True if the load of an unloading step has jumped up after it may have passed a tension larger than that of all steps so far.
+    /// True if the load of an unloading step has jumped up after it may have passed a tension larger than
+    /// that of all steps so far.
     fn may_hide_pull_off(&self, attempt: &Attempt) -> bool {
         let (from, to) = (&self.at.last, &attempt.step);
         let before_jump = self.extrapolated_load(to.mean_penetration - from.mean_penetration);
         attempt.across > 0.0 && to.totals.load > from.totals.load && self.exceeds_max_tension(before_jump)
     }
 
-    /// True if an unloading step may have passed a larger tension than that of all steps so far: by the cubic through loads and slopes at both ends
-    /// (Hermite), or before an event by the slope at its beginning.
+    /// True if an unloading step may have passed a larger tension than that of all steps so far: by the cubic
+    /// through loads and slopes at both ends (Hermite), or before an event by the slope at its beginning.
     ///
-    /// This is for attraction of a range, under which the load is smooth up to an event. With bonds the slope diverges at a limit point.
+    /// This is for attraction of a range, under which the load is smooth up to an event. With bonds the slope
+    /// diverges at a limit point.
     fn may_pass_pull_off(&self, attempt: &Attempt) -> bool {
         let (from, to) = (&self.at.last, &attempt.step);
         if self.problem.attraction != Attraction::Range || from.reversal.is_none() {
             return false;
         }
-        let known = self.at.max_tension.as_ref().map_or(0.0, |(known, ..)| *known).min(from.totals.load).min(to.totals.load);
+        let known = self
+            .at
+            .max_tension
+            .as_ref()
+            .map_or(0.0, |(known, ..)| *known)
+            .min(from.totals.load)
+            .min(to.totals.load);
         // An event after the maximum tension may look like a gain of energy, since the integral misses that.
         let has_event = to.imbalance.abs() > self.resolution(to.uncertainty);
         let least = if has_event {
@@ -391,9 +441,8 @@ impl<'a> CycleRun<'a> {
 
     /// True if a load is a tension that exceeds that of all steps so far by more than a fraction.
     fn exceeds_max_tension(&self, load: f64) -> bool {
-        self.at
-            .max_tension
-            .as_ref()
-            .is_some_and(|(known, ..)| *known < 0.0 && load < (1.0 + self.problem.numerics.steps.hidden_tension) * known)
+        self.at.max_tension.as_ref().is_some_and(|(known, ..)| {
+            *known < 0.0 && load < (1.0 + self.problem.numerics.steps.hidden_tension) * known
+        })
     }
 }

@@ -5,7 +5,8 @@ use super::super::super::previews::Known;
 use crate::model::{AsperityOptions, Coalescence, SurfaceSource};
 use crate::spec::CaseParams;
 
-/// Time of one cycle of the asperity model with merging at ζ = 64 and `F_max/(E* A0)` = 0.0071 \[s\], and its exponent in ζ.
+/// Time of one cycle of the asperity model with merging at ζ = 64 and `F_max/(E* A0)` = 0.0071 \[s\], and its
+/// exponent in ζ.
 pub(in super::super) const OF_ASPERITIES: [f64; 2] = [1.4, 2.7];
 /// Number of contact spots of such a cycle, and its exponent in ζ.
 const CONTACTS: [f64; 2] = [335.0, 1.63];
@@ -13,7 +14,11 @@ const CONTACTS: [f64; 2] = [335.0, 1.63];
 const BYTES: [f64; 3] = [75e3, 11.2, 8e7];
 
 /// Memory and time of a cycle on a generated surface, or on a measured one that is known.
-pub(in super::super) fn cost(params: &CaseParams, options: &AsperityOptions, known: Option<&Known>) -> Option<Cost> {
+pub(in super::super) fn cost(
+    params: &CaseParams,
+    options: &AsperityOptions,
+    known: Option<&Known>,
+) -> Option<Cost> {
     let (points, wavelengths) = match &params.surface {
         SurfaceSource::Generated(surface) => (surface.grid() as f64, f64::from(surface.magnification)),
         SurfaceSource::Measured(_) => {

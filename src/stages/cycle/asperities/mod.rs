@@ -52,8 +52,20 @@ fn method(of: Of<'_>, scale: Scale, summits: &[Summit], max_loads: &[f64]) -> Re
         allow_low_tabor: options.allow_low_tabor,
         slips: params.slips(),
     };
-    let options = Options { rules, approach_step: options.approach_step, contacts: params.cycle.contacts, ..Options::default() };
-    Ok(Asperities::of_summits(summits, scale.length_m, scale.rms_height_m, &params.material, max_loads, &options)?)
+    let options = Options {
+        rules,
+        approach_step: options.approach_step,
+        contacts: params.cycle.contacts,
+        ..Options::default()
+    };
+    Ok(Asperities::of_summits(
+        summits,
+        scale.length_m,
+        scale.rms_height_m,
+        &params.material,
+        max_loads,
+        &options,
+    )?)
 }
 
 /// The asperity model of a case, whose number of steps is limited.
@@ -74,7 +86,8 @@ pub(super) fn run(task: &CycleTask<'_>, options: &AsperityOptions) -> Result<Com
     let cycle = task.follow(&method)?;
     let (of, problem) = (Identity::of(campaign, unit), &method.problem);
     let tables = vec![turning(of, &cycle, problem, &params.cycle.max_load)?, merged(of, &cycle)?];
-    let (load_unit_n, area_m2, rms_height_m) = (problem.load_unit_n(), problem.length_m * problem.length_m, problem.rms_height_m);
+    let (load_unit_n, area_m2, rms_height_m) =
+        (problem.load_unit_n(), problem.length_m * problem.length_m, problem.rms_height_m);
     Ok(Computed {
         method: Asperities::NAME,
         size: method.size(),
@@ -102,12 +115,19 @@ pub(super) fn unload_again(
 ) -> Result<Cycle<()>, StageError> {
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
-    let method = method(Of { params, options }, scale(campaign, &campaign.surfaces[unit.surface])?, &summits, &[max_load])?;
+    let method = method(
+        Of { params, options },
+        scale(campaign, &campaign.surfaces[unit.surface])?,
+        &summits,
+        &[max_load],
+    )?;
     let path = campaign.cycle_dir(unit).join("turning.parquet");
     let frame = parquet::read_table(&path, &schema::TURNING)?;
     let (loads, approaches) = (frame.f64("max_load")?, frame.f64("approach_m")?);
-    let (asperities, states, radii) = (frame.i64("asperity_id")?, frame.text("state")?, frame.f64("contact_radius_m")?);
-    let (covering, release, barred) = (frame.i64_or_null("covered_by")?, frame.f64_or_null("release_m")?, frame.bool("barred")?);
+    let (asperities, states, radii) =
+        (frame.i64("asperity_id")?, frame.text("state")?, frame.f64("contact_radius_m")?);
+    let (covering, release, barred) =
+        (frame.i64_or_null("covered_by")?, frame.f64_or_null("release_m")?, frame.bool("barred")?);
     let rows: Vec<usize> = (0..frame.row_count()).filter(|k| loads[*k] == max_load).collect();
     let (into, counts) = (frame.i64_or_null("merged_into")?, frame.i64("merged_count")?);
     let status = |k: usize| match (covering[k], release[k], into[k]) {
@@ -116,14 +136,20 @@ pub(super) fn unload_again(
         _ if states[k] == SpotStatus::Contact.word() => Status::Contact,
         _ => Status::Free,
     };
-    let kept = |&k: &usize| Kept { asperity: asperities[k] as usize, status: status(k), radius_m: radii[k], barred: barred[k] };
+    let kept = |&k: &usize| Kept {
+        asperity: asperities[k] as usize,
+        status: status(k),
+        radius_m: radii[k],
+        barred: barred[k],
+    };
     let Some(approach) = rows.first().map(|k| approaches[*k]) else {
         let mut kept = loads;
         kept.dedup();
         return Err(StageError::NoTurning { max_load, path, kept: format!("the loads {kept:?}") });
     };
     let merged = merged_rows(&campaign.cycle_dir(unit).join("merged.parquet"), counts[rows[0]] as usize)?;
-    let state = State::restored(&method.problem, approach, &merged, &rows.iter().map(kept).collect::<Vec<_>>())?;
+    let state =
+        State::restored(&method.problem, approach, &merged, &rows.iter().map(kept).collect::<Vec<_>>())?;
     Ok(with_centres(method.unload_from(0, state)?.without_states(), &summits))
 }
 
@@ -149,11 +175,19 @@ fn merged_rows(path: &Path, count: usize) -> Result<Vec<Merged>, StageError> {
     Ok((0..count.min(frame.row_count())).map(row).collect())
 }
 
-fn turning(of: Identity<'_>, cycle: &Cycle<State>, problem: &Problem, loads: &[f64]) -> Result<Frame, StageError> {
+fn turning(
+    of: Identity<'_>,
+    cycle: &Cycle<State>,
+    problem: &Problem,
+    loads: &[f64],
+) -> Result<Frame, StageError> {
     let states = loads.iter().zip(&cycle.turning);
     let rows: Vec<(f64, f64, Kept, usize)> = states
         .flat_map(|(load, (_, state))| {
-            state.kept(problem).into_iter().map(|kept| (*load, state.mean_penetration_m, kept, state.merged.len()))
+            state
+                .kept(problem)
+                .into_iter()
+                .map(|kept| (*load, state.mean_penetration_m, kept, state.merged.len()))
         })
         .collect();
     let covered = |status: Status| match status {
@@ -170,7 +204,11 @@ fn turning(of: Identity<'_>, cycle: &Cycle<State>, problem: &Problem, loads: &[f
         .i64("covered_by", rows.iter().map(|row| covered(row.2.status).map(|(by, _)| by as i64)))
         .f64("release_m", rows.iter().map(|row| covered(row.2.status).map(|(_, release_m)| release_m)))
         .bool("barred", rows.iter().map(|row| row.2.barred))
-        .i64("merged_into", rows.iter().map(|row| if let Status::Merged { into } = row.2.status { Some(into as i64) } else { None }))
+        .i64(
+            "merged_into",
+            rows.iter()
+                .map(|row| if let Status::Merged { into } = row.2.status { Some(into as i64) } else { None }),
+        )
         .i64("merged_count", rows.iter().map(|row| row.3 as i64))
         .build()?)
 }
@@ -199,14 +237,18 @@ fn merged(of: Identity<'_>, cycle: &Cycle<State>) -> Result<Frame, StageError> {
         .build()?)
 }
 
-/// Adds the centre of each stored contact spot. Numbers of merged spots go on during each unloading from that of its load reversal.
+/// Adds the centre of each stored contact spot. Numbers of merged spots go on during each unloading from that
+/// of its load reversal.
 fn with_centres(mut cycle: Cycle<()>, summits: &[Summit]) -> Cycle<()> {
     let branch = |step: usize| cycle.steps[step].max_load.map(f64::to_bits);
-    let merged: HashMap<_, _> = cycle.merged.iter().map(|m| ((branch(m.step), m.asperity), m.spot.place_m)).collect();
+    let merged: HashMap<_, _> =
+        cycle.merged.iter().map(|m| ((branch(m.step), m.asperity), m.spot.place_m)).collect();
     let of_asperity = |i: usize| summits.get(i).map(|summit| [summit.x_m, summit.y_m]);
-    let of_merged = |step: usize, i: usize| merged.get(&(branch(step), i)).or_else(|| merged.get(&(None, i))).copied();
+    let of_merged =
+        |step: usize, i: usize| merged.get(&(branch(step), i)).or_else(|| merged.get(&(None, i))).copied();
     let centre = |step: usize, i: usize| of_asperity(i).or_else(|| of_merged(step, i));
-    let centres: Vec<_> = cycle.contacts.iter().map(|spot| spot.asperity.and_then(|i| centre(spot.step, i))).collect();
+    let centres: Vec<_> =
+        cycle.contacts.iter().map(|spot| spot.asperity.and_then(|i| centre(spot.step, i))).collect();
     cycle.contacts.iter_mut().zip(centres).for_each(|(spot, centre)| spot.centroid_m = centre);
     cycle
 }

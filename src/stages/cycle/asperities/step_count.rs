@@ -16,8 +16,8 @@ const HALVINGS: u32 = 20;
 
 /// Refuses a cycle of more than [`MOST`] steps.
 ///
-/// The penetrations at its loads are those of Hertz contacts without interaction and adhesion, which carry more load at the same penetration than the contact
-/// does. So the number of steps is estimated from below.
+/// The penetrations at its loads are those of Hertz contacts without interaction and adhesion, which carry
+/// more load at the same penetration than the contact does. So the number of steps is estimated from below.
 pub(super) fn bound(problem: &Problem, summits: &[Summit], of: Of<'_>) -> Result<(), StageError> {
     let (params, approach_step) = (of.params, of.options.approach_step);
     let loads = &params.cycle.max_load;
@@ -43,6 +43,11 @@ pub(super) fn bound(problem: &Problem, summits: &[Summit], of: Of<'_>) -> Result
         low
     };
     let unloading: Vec<f64> = loads.iter().map(|load| penetration(*load)).collect();
-    let steps = (unloading.iter().sum::<f64>() + unloading.iter().copied().fold(0.0, f64::max)) / approach_step;
-    if steps > MOST as f64 { Err(StageError::TooManySteps { approach_step, steps, limit: MOST }) } else { Ok(()) }
+    let steps =
+        (unloading.iter().sum::<f64>() + unloading.iter().copied().fold(0.0, f64::max)) / approach_step;
+    if steps > MOST as f64 {
+        Err(StageError::TooManySteps { approach_step, steps, limit: MOST })
+    } else {
+        Ok(())
+    }
 }

@@ -1,4 +1,5 @@
-//! Errors of the asperity model on generated surfaces before a run: the first surface of a case is made, and its asperities are checked.
+//! Errors of the asperity model on generated surfaces before a run: the first surface of a case is made, and
+//! its asperities are checked.
 
 use super::{Of, checked};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit};
@@ -19,7 +20,12 @@ pub(in crate::stages) struct Trial(RefCell<HashMap<usize, Vec<Summit>>>);
 
 impl Trial {
     /// The error by which the first cycle of a case by the asperity model fails; nothing if it is not known.
-    pub(in crate::stages) fn error(&self, campaign: &Campaign, unit: &CaseUnit, cycle: &CycleUnit) -> Option<String> {
+    pub(in crate::stages) fn error(
+        &self,
+        campaign: &Campaign,
+        unit: &CaseUnit,
+        cycle: &CycleUnit,
+    ) -> Option<String> {
         let (params, place) = (&unit.case.params, cycle.surface);
         let (options, surface) = (params.asperities()?, params.surface.generated()?);
         let grid = surface.grid() as usize;
@@ -32,7 +38,9 @@ impl Trial {
             let seed = realization_seed(campaign.spec.seed, u64::from(campaign.surfaces[place].realization));
             let heights_m = synthesize(&surface.spectrum(), &seed, grid).heights_m;
             let per_wavelength = f64::from(surface.points_per_shortest_wavelength);
-            find_summits(heights_m.view(), surface.length_m, per_wavelength).map(|found| found.list).unwrap_or_default()
+            find_summits(heights_m.view(), surface.length_m, per_wavelength)
+                .map(|found| found.list)
+                .unwrap_or_default()
         });
         checked(Of { params, options }, scale, summits).err().map(|error| error.to_string())
     }

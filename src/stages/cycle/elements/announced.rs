@@ -27,7 +27,10 @@ struct Costly<'a> {
 }
 
 /// Warnings of boundary elements; `costs` are those of the cases with their `U_el/Δγ`, in their order.
-pub(in crate::stages) fn announced(campaign: &Campaign, costs: &[(Option<Cost>, Option<f64>)]) -> Vec<Outside> {
+pub(in crate::stages) fn announced(
+    campaign: &Campaign,
+    costs: &[(Option<Cost>, Option<f64>)],
+) -> Vec<Outside> {
     let costly = campaign.cases.iter().zip(costs).filter_map(|(unit, (cost, ratio))| {
         let params = &unit.case.params;
         Some(Costly { unit, of: Of { params, options: params.elements()? }, cost: (*cost)?, ratio: *ratio })
@@ -47,12 +50,14 @@ fn many_steps(campaign: &Campaign) -> Option<Outside> {
     let steps = |unit: &CaseUnit| {
         let params = &unit.case.params;
         let (of, surface) = (Of { params, options: params.elements()? }, params.surface.generated()?);
-        of.range_steps(&Lattice::of_generated(of, surface), surface.rms_height_m).filter(|steps| *steps > MANY_RANGE_STEPS)
+        of.range_steps(&Lattice::of_generated(of, surface), surface.rms_height_m)
+            .filter(|steps| *steps > MANY_RANGE_STEPS)
     };
     let many = campaign.cases.iter().filter_map(|unit| Some((unit.id.clone(), steps(unit)?.round())));
     let (cases, values): (Vec<String>, Vec<f64>) = many.unzip();
     let range = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
-    let measured = format!("{} (limit ≤ {MANY_RANGE_STEPS})", MANY_STEPS.text.replace("{}", &interval(range)));
+    let measured =
+        format!("{} (limit ≤ {MANY_RANGE_STEPS})", MANY_STEPS.text.replace("{}", &interval(range)));
     Some(Outside { kind: MANY_STEPS, limit: MANY_RANGE_STEPS, range, measured, cases })
 }
 
@@ -66,19 +71,30 @@ fn long_loops(all: &[Costly<'_>]) -> Option<Outside> {
     let smaller = (1..).map(|half| cost_of_all.points >> half).take_while(|points| *points >= 16);
     let enough = |points: u64| cost_of_all.per_wavelength * points as f64 / cost_of_all.points as f64;
     let seconds = |points: u64| {
-        let lattice = Lattice { points: points as usize, per_wavelength: enough(points), range_m: None, is_mirrored: false };
+        let lattice = Lattice {
+            points: points as usize,
+            per_wavelength: enough(points),
+            range_m: None,
+            is_mirrored: false,
+        };
         cost(&lattice, loads, longest.ratio, 0.0).seconds
     };
-    let advice = smaller.take_while(|points| enough(*points) >= FEWEST_PER_WAVELENGTH).map(|points| (points, seconds(points)));
+    let advice = smaller
+        .take_while(|points| enough(*points) >= FEWEST_PER_WAVELENGTH)
+        .map(|points| (points, seconds(points)));
     let fast = advice.clone().find(|(_, seconds)| *seconds <= LONG).or_else(|| advice.last());
     let help = fast.map_or_else(
         || "smaller grids have less than 4 points per shortest wavelength".to_owned(),
         |(points, seconds)| {
             let per_wavelength = significant(enough(points), 2);
-            format!("points = {points}: {per_wavelength} points per shortest wavelength, about {}", in_words(seconds))
+            format!(
+                "points = {points}: {per_wavelength} points per shortest wavelength, about {}",
+                in_words(seconds)
+            )
         },
     );
-    let shown = format!("{} min (accuracy: a factor of 3; limit 10 min; {help})", interval(range.map(two_digits)));
+    let shown =
+        format!("{} min (accuracy: a factor of 3; limit 10 min; {help})", interval(range.map(two_digits)));
     let measured = LONG_LOOP.text.replace("{}", &shown);
     let cases = long.iter().map(|of| of.unit.id.clone()).collect();
     Some(Outside { kind: LONG_LOOP, limit: LONG / 60.0, range, measured, cases })

@@ -6,21 +6,22 @@ use crate::physics::elements::{Numerics, memory_bytes};
 
 /// Time of one loop by boundary elements, `a N² + b N³` for a grid of N x N points \[s\].
 pub(in super::super) const OF_POINTS: [f64; 2] = [6e-5, 3e-7];
-/// Exponent of the number of steps: quiet steps are cheaper than those with events. Measured: 3.0 and 12 times the transforms
-/// with 6 and 30 times the steps.
+/// Exponent of the number of steps: quiet steps are cheaper than those with events. Measured: 3.0 and 12
+/// times the transforms with 6 and 30 times the steps.
 const OF_STEPS: f64 = 0.7;
 /// Steps of a loop by boundary elements without weak adhesion, in the mean.
 const STEPS: f64 = 170.0;
 /// Time of a loop that is announced before it starts \[s\].
 pub(in super::super) const LONG: f64 = 600.0;
 
-/// Memory and time of a loop with a number of `loads` at a ratio `U_el/Δγ`; `range_steps` are the steps over the gaps at which
-/// an attraction with a range acts.
+/// Memory and time of a loop with a number of `loads` at a ratio `U_el/Δγ`; `range_steps` are the steps over
+/// the gaps at which an attraction with a range acts.
 pub(super) fn cost(lattice: &Lattice, loads: usize, ratio: Option<f64>, range_steps: f64) -> Cost {
     let n = lattice.points as f64;
     let [square, cube] = OF_POINTS;
     let plain = square * n.powi(2) + cube * n.powi(3);
-    let steps = Numerics::default().refinement(ratio.unwrap_or_default()).0.powf(OF_STEPS) + range_steps / STEPS;
+    let steps =
+        Numerics::default().refinement(ratio.unwrap_or_default()).0.powf(OF_STEPS) + range_steps / STEPS;
     Cost {
         points: lattice.points as u64,
         per_wavelength: lattice.per_wavelength,

@@ -37,12 +37,14 @@ impl Square {
     /// Square of a surface of a case with this header.
     pub(in crate::stages) fn of(params: &CaseParams, header: &SurfaceHeader) -> Self {
         let of_generated = |surface: &GeneratedSurface| header.length_m / f64::from(surface.magnification);
-        let of_measured = || header.measured.as_ref().map_or(header.length_m, |measured| measured.shortest_wavelength_m);
+        let of_measured =
+            || header.measured.as_ref().map_or(header.length_m, |measured| measured.shortest_wavelength_m);
         let shortest_wavelength_m = params.surface.generated().map_or_else(of_measured, of_generated);
         Self { length_m: header.length_m, shortest_wavelength_m, is_periodic: header.periodic }
     }
 
-    /// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not periodic is continued by mirror images.
+    /// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not
+    /// periodic is continued by mirror images.
     pub(super) fn extent(self) -> (f64, f64) {
         let length_m = if self.is_periodic { self.length_m } else { 2.0 * self.length_m };
         (length_m, length_m / self.shortest_wavelength_m)
@@ -74,10 +76,16 @@ impl Lattice {
 }
 
 /// The grid of a case on a surface with this header and rms height \[m\], checked.
-pub(super) fn checked_lattice(of: Of<'_>, header: &SurfaceHeader, rms_height_m: f64) -> Result<Lattice, StageError> {
+pub(super) fn checked_lattice(
+    of: Of<'_>,
+    header: &SurfaceHeader,
+    rms_height_m: f64,
+) -> Result<Lattice, StageError> {
     let (length_m, wavelengths) = Square::of(of.params, header).extent();
     let (elements, loads) = (of.options, of.params.cycle.max_load.len());
-    if let Some((problem, help)) = elements.refusal(length_m, wavelengths, of.params.material.adhesion_length_m()) {
+    if let Some((problem, help)) =
+        elements.refusal(length_m, wavelengths, of.params.material.adhesion_length_m())
+    {
         return Err(PhysicsError::Surface { problem, help }.into());
     }
     let lattice = Lattice::of(of, (length_m, wavelengths));
@@ -87,9 +95,15 @@ pub(super) fn checked_lattice(of: Of<'_>, header: &SurfaceHeader, rms_height_m: 
         return Err(StageError::Range { problem, help });
     }
     if lattice.is_mirrored && lattice.points % 2 == 1 {
-        let problem =
-            format!("a scan that is not periodic is continued by mirror images: {} grid points are an odd number", lattice.points);
-        return Err(PhysicsError::Surface { problem, help: "use an even number of boundary_elements.points" }.into());
+        let problem = format!(
+            "a scan that is not periodic is continued by mirror images: {} grid points are an odd number",
+            lattice.points
+        );
+        return Err(PhysicsError::Surface {
+            problem,
+            help: "use an even number of boundary_elements.points",
+        }
+        .into());
     }
     Ok(lattice)
 }
@@ -98,7 +112,10 @@ pub(super) fn checked_lattice(of: Of<'_>, header: &SurfaceHeader, rms_height_m: 
 pub(super) fn enough_memory(points: usize, loads: usize) -> Result<(), PhysicsError> {
     let bytes = memory_bytes(points, loads);
     memory::check(bytes).map_err(|_| PhysicsError::Surface {
-        problem: format!("boundary elements on {points} x {points} points need {:.2} GB of memory, which are not free", bytes as f64 / 1e9),
+        problem: format!(
+            "boundary elements on {points} x {points} points need {:.2} GB of memory, which are not free",
+            bytes as f64 / 1e9
+        ),
         help: "use fewer boundary_elements.points, fewer loads, or fewer tasks at once (--jobs 1)",
     })
 }

@@ -49,14 +49,16 @@ impl Of<'_> {
         Some(self.options.range_steps(lattice.range_m?, rms_height_m, self.params.cycle.max_load.len()))
     }
 
-    /// Memory and time of a cycle at a ratio `U_el/Δγ`, on a generated surface or on a measured one that is known.
+    /// Memory and time of a cycle at a ratio `U_el/Δγ`, on a generated surface or on a measured one that is
+    /// known.
     pub(super) fn cost(self, known: Option<&Known>, ratio: Option<f64>) -> Option<Cost> {
         let lattice = self.lattice(known.map(|known| Square::of(self.params, &known.header)))?;
         let of_generated = self.params.surface.generated().map(|surface| surface.rms_height_m);
         let rms_height_m = of_generated.or_else(|| known.map(|known| known.header.rms_height_m))?;
         let range_steps = self.range_steps(&lattice, rms_height_m).unwrap_or_default();
         let cost = cost::cost(&lattice, self.params.cycle.max_load.len(), ratio, range_steps);
-        let shortest = known.and_then(Known::found).map_or(1.0, |found| found.estimates.per_shortest_wavelength(1.0));
+        let shortest =
+            known.and_then(Known::found).map_or(1.0, |found| found.estimates.per_shortest_wavelength(1.0));
         Some(Cost { per_wavelength: shortest * cost.per_wavelength, ..cost })
     }
 
@@ -76,14 +78,22 @@ impl Of<'_> {
 /// Computes a cycle.
 pub(super) fn run(task: &CycleTask<'_>, options: &ElementOptions) -> Result<Computed, StageError> {
     let (campaign, unit) = (task.campaign, task.unit);
-    let Setup { method, summits, per_wavelength } = setup(campaign, unit, Of { params: task.params(), options })?;
+    let Setup { method, summits, per_wavelength } =
+        setup(campaign, unit, Of { params: task.params(), options })?;
     let cycle = task.follow(&method)?;
     let (size, units, dir) = (method.size(), method.units, campaign.cycle_dir(unit));
     let contact_gap_m = method.problem.law.contact_gap() * units.spacing_m();
     let free = method.load_without_adhesion(&cycle)?;
     let points = units.own_points();
     let length_m = points as f64 * units.spacing_m();
-    let header = MapsHeader { key: &unit.key, cycle_id: &unit.id, length_m, points, first_m: units.first_m, contact_gap_m };
+    let header = MapsHeader {
+        key: &unit.key,
+        cycle_id: &unit.id,
+        length_m,
+        points,
+        first_m: units.first_m,
+        contact_gap_m,
+    };
     let states: Vec<&Turning> = cycle.turning.iter().map(|(_, state)| state).collect();
     let states = serialized(&states).map_err(|error| StageError::State { what: error.to_string() })?;
     let files = vec![
@@ -120,15 +130,23 @@ fn adhesionless(of: Identity<'_>, steps: &[FreeStep]) -> Result<Frame, StageErro
 
 /// Point of the adhesionless curve, with E* \[Pa\].
 fn curve_point(step: &FreeStep, modulus_pa: f64) -> CurvePoint {
-    CurvePoint { penetration_m: step.mean_penetration_m, load_m2: step.load_n / modulus_pa, area_m2: step.area_m2 }
+    CurvePoint {
+        penetration_m: step.mean_penetration_m,
+        load_m2: step.load_n / modulus_pa,
+        area_m2: step.area_m2,
+    }
 }
 
 /// Maps as they are stored, with the load at their reversal.
 fn maps<S>(cycle: &Cycle<S>, max_loads: &[f64]) -> Vec<ContactMap> {
-    let reversal_load = |step: usize| cycle.turning.iter().position(|(at, _)| *at == step).and_then(|at| max_loads.get(at)).copied();
+    let reversal_load = |step: usize| {
+        cycle.turning.iter().position(|(at, _)| *at == step).and_then(|at| max_loads.get(at)).copied()
+    };
     let stored = |map: &Map| {
         let step = &cycle.steps[map.step];
-        let values = |field: &[f32]| field.iter().map(|value| if map.is_further { rounded(*value) } else { *value }).collect();
+        let values = |field: &[f32]| {
+            field.iter().map(|value| if map.is_further { rounded(*value) } else { *value }).collect()
+        };
         ContactMap {
             step: map.step as i64,
             branch: step.branch.word(),
@@ -166,12 +184,15 @@ pub(super) fn unload_again(
     let params = &campaign.cases[unit.case].case.params;
     let Setup { method, .. } = setup(campaign, unit, Of { params, options })?;
     let path = turning_path(&campaign.cycle_dir(unit));
-    let states: Option<Vec<Turning>> = read_halfway(&path, &unit.key).and_then(|bytes| postcard::from_bytes(&bytes).ok());
+    let states: Option<Vec<Turning>> =
+        read_halfway(&path, &unit.key).and_then(|bytes| postcard::from_bytes(&bytes).ok());
     let reversal = params.cycle.max_load.iter().position(|load| *load == max_load);
     let kept = || format!("the loads {:?}", params.cycle.max_load);
     let lacking = || StageError::NoTurning { max_load, path: path.clone(), kept: kept() };
     let reversal = reversal.ok_or_else(lacking)?;
-    let turning = states.and_then(|mut all| (reversal < all.len()).then(|| all.swap_remove(reversal))).ok_or_else(lacking)?;
+    let turning = states
+        .and_then(|mut all| (reversal < all.len()).then(|| all.swap_remove(reversal)))
+        .ok_or_else(lacking)?;
     if turning.state.displacement.len() != method.problem.half_space.points() {
         return Err(lacking());
     }

@@ -46,15 +46,21 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit, of: Of<'_>) -> Result
         ..Options::default()
     };
     let (length_m, is_periodic) = (header.length_m, header.periodic);
-    let map = HeightMap { heights_m: heights.view(), length_m, is_periodic, shortest_wavelength_m, rms_height_m };
+    let map =
+        HeightMap { heights_m: heights.view(), length_m, is_periodic, shortest_wavelength_m, rms_height_m };
     let method = Elements::new(&map, &params.material, &params.cycle.max_load, &options)?;
     let method = method.with_summits(summits.iter().map(|summit| [summit.x_m, summit.y_m]));
-    let by_spectrum = params.surface.generated().map_or(lattice, |surface| Lattice::of_generated(of, surface));
+    let by_spectrum =
+        params.surface.generated().map_or(lattice, |surface| Lattice::of_generated(of, surface));
     Ok(Setup { method, summits, per_wavelength: by_spectrum.per_wavelength })
 }
 
 /// The JKR limit of a case on a surface with these asperities.
-fn bonded(material: &Material, list: &[Summit], (nucleation, opening): (Nucleation, Opening)) -> Result<Attraction, StageError> {
+fn bonded(
+    material: &Material,
+    list: &[Summit],
+    (nucleation, opening): (Nucleation, Opening),
+) -> Result<Attraction, StageError> {
     let nucleation_m = match nucleation {
         Nucleation::Touch => 0.0,
         Nucleation::Wu => wu_gap(material, list)?,

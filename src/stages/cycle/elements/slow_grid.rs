@@ -19,7 +19,9 @@ const SLOW: Caution = Caution {
 
 /// Cases of boundary elements with a number of grid points along a side that has a large prime factor.
 pub(super) fn slow_grids(campaign: &Campaign) -> Option<Outside> {
-    let points = |unit: &CaseUnit| unit.case.params.elements()?.points.filter(|points| largest_factor(*points) > TOLERATED_FACTOR);
+    let points = |unit: &CaseUnit| {
+        unit.case.params.elements()?.points.filter(|points| largest_factor(*points) > TOLERATED_FACTOR)
+    };
     let slow = campaign.cases.iter().filter_map(|unit| Some((unit.id.clone(), points(unit)?)));
     let (cases, mut points): (Vec<String>, Vec<u32>) = slow.unzip();
     points.sort_unstable();
@@ -27,13 +29,19 @@ pub(super) fn slow_grids(campaign: &Campaign) -> Option<Outside> {
     let named: Vec<String> = points
         .iter()
         .map(|points| {
-            format!("{points} = {} x {}, next: {}", points / largest_factor(*points), largest_factor(*points), next_fast(*points))
+            format!(
+                "{points} = {} x {}, next: {}",
+                points / largest_factor(*points),
+                largest_factor(*points),
+                next_fast(*points)
+            )
         })
         .collect();
     let factors = || points.iter().map(|points| f64::from(largest_factor(*points)));
     let range = [factors().reduce(f64::min)?, factors().reduce(f64::max)?];
     let shown = factors().map(|factor| factor.to_string()).collect::<Vec<_>>().join(", ");
-    let measured = format!("{} ({}; limit {TOLERATED_FACTOR})", SLOW.text.replace("{}", &shown), named.join("; "));
+    let measured =
+        format!("{} ({}; limit {TOLERATED_FACTOR})", SLOW.text.replace("{}", &shown), named.join("; "));
     Some(Outside { kind: SLOW, limit: f64::from(TOLERATED_FACTOR), range, measured, cases })
 }
 

@@ -7,7 +7,8 @@ use crate::asperities::field::spot_field::{LANES, Place, Spot, SpotColumns, fiel
 use crate::model::Interaction as Kind;
 use multiversion::multiversion;
 
-/// Distance over radius from which a spot acts by its moments: their relative error is 6e-10 there, and falls with the eighth power of the distance.
+/// Distance over radius from which a spot acts by its moments: their relative error is 6e-10 there, and falls
+/// with the eighth power of the distance.
 const FAR: f64 = 8.0;
 
 /// Targets of one block: their columns stay in the fastest cache for all spots.
@@ -54,10 +55,15 @@ impl Source<'_> {
 }
 
 impl DirectSum {
-    /// Displacement \[m\] by spots at each of `targets`, without that of a spot at its own centre; by number, 0 elsewhere.
+    /// Displacement \[m\] by spots at each of `targets`, without that of a spot at its own centre; by number,
+    /// 0 elsewhere.
     ///
     /// The displacement by each spot is multiplied by its factor in `spots`.
-    pub(crate) fn at_many(&self, spots: &[(f64, Spot)], mut targets: impl Iterator<Item = usize>) -> Vec<f64> {
+    pub(crate) fn at_many(
+        &self,
+        spots: &[(f64, Spot)],
+        mut targets: impl Iterator<Item = usize>,
+    ) -> Vec<f64> {
         let mut found = vec![0.0; self.positions.len()];
         if self.kind == Kind::None {
             return found;
@@ -90,7 +96,12 @@ impl DirectSum {
         let source = |((times, spot), moments): (&'a (f64, Spot), &[f64; ORDERS])| {
             let moments = moments.map(|moment| times * moment);
             let near = (self.kind == Kind::Spots).then_some((*times, spot));
-            Source { place: self.place([spot.x, spot.y]), near, moments, images: self.is_periodic().then(|| ImageField::of(&moments)) }
+            Source {
+                place: self.place([spot.x, spot.y]),
+                near,
+                moments,
+                images: self.is_periodic().then(|| ImageField::of(&moments)),
+            }
         };
         spots.iter().zip(&moments.value).map(source).collect()
     }
@@ -98,9 +109,16 @@ impl DirectSum {
 
 /// Adds the field of a spot: far from it, and without a `spot` everywhere, that of its moments.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn add_spot(place: Place, spot: Option<(f64, &Spot)>, moments: &[f64; ORDERS], targets: &Targets, sums: &mut [[f64; LANES]]) {
+fn add_spot(
+    place: Place,
+    spot: Option<(f64, &Spot)>,
+    moments: &[f64; ORDERS],
+    targets: &Targets,
+    sums: &mut [[f64; LANES]],
+) {
     let near = spot.map_or(0.0, |(_, spot)| (FAR * spot.a).powi(2));
-    let (times, a, curvature) = spot.map_or((0.0, 0.0, 0.0), |(times, spot)| (times, spot.a, 1.0 / spot.radius));
+    let (times, a, curvature) =
+        spot.map_or((0.0, 0.0, 0.0), |(times, spot)| (times, spot.a, 1.0 / spot.radius));
     let (root, inverse_root) = (a.sqrt(), 1.0 / a.sqrt());
     for ((x, y), sum) in targets.x.iter().zip(&targets.y).zip(sums) {
         let r2 = squared_distances(place, x, y);
@@ -143,8 +161,10 @@ mod tests {
 
     #[test]
     fn law_lanes_over_targets_give_the_sums_over_sources() {
-        let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
-        let positions: Vec<[f64; 2]> = (0..29).map(|k| [f64::from(k * 7 % 29) * 3e-5, f64::from(k * 11 % 29) * 3.4e-5]).collect();
+        let material =
+            Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
+        let positions: Vec<[f64; 2]> =
+            (0..29).map(|k| [f64::from(k * 7 % 29) * 3e-5, f64::from(k * 11 % 29) * 3.4e-5]).collect();
         let spots = [(3, 2e-5), (17, 9e-6)].map(|(i, a): (usize, f64)| {
             let [x, y] = positions[i];
             (i, Spot { x, y, a, radius: 3e-5, load: -4e-6 * a / 2e-5, load_slope: 0.1 })
@@ -158,16 +178,24 @@ mod tests {
                 let mut wanted = Vec::new();
                 sum.displacements(&sources, &targets, &mut wanted, &mut Effort::default());
                 let found = sum.at_many(&spots.map(|(_, spot)| (1.0, spot)), 0..29);
-                // Far from a spot its moments are used, and of the fields of the images a polynomial; point loads have only one moment.
-                let tolerance = if kind == Kind::Spots || boundary == Boundary::Periodic { 1e-9 } else { 1e-14 };
+                // Far from a spot its moments are used, and of the fields of the images a polynomial; point
+                // loads have only one moment.
+                let tolerance =
+                    if kind == Kind::Spots || boundary == Boundary::Periodic { 1e-9 } else { 1e-14 };
                 let largest = wanted.iter().fold(0.0f64, |most, w| most.max(w.abs()));
                 for (found, wanted) in found.iter().zip(&wanted) {
-                    assert!((found - wanted).abs() <= tolerance * largest, "{kind:?} {boundary:?}: {found:e} {wanted:e}");
+                    assert!(
+                        (found - wanted).abs() <= tolerance * largest,
+                        "{kind:?} {boundary:?}: {found:e} {wanted:e}"
+                    );
                 }
                 let signed = [(1.0, spots[0].1), (-1.0, spots[1].1)];
                 for (target, wanted) in sum.at_many(&signed, 0..29).into_iter().enumerate() {
                     let found = sum.at_one(&signed, target);
-                    assert!((found - wanted).abs() <= tolerance * largest, "{kind:?} {boundary:?}: {found:e} {wanted:e}");
+                    assert!(
+                        (found - wanted).abs() <= tolerance * largest,
+                        "{kind:?} {boundary:?}: {found:e} {wanted:e}"
+                    );
                 }
             }
         }

@@ -8,10 +8,17 @@ use crate::math::vector::nearest_image;
 use multiversion::multiversion;
 
 impl DirectSum {
-    /// Displacement \[m\] at each of `targets` farther than `reach` \[m\] from a load \[N\] at `place` \[m\], by the load and its images; 0 at the others.
+    /// Displacement \[m\] at each of `targets` farther than `reach` \[m\] from a load \[N\] at `place` \[m\],
+    /// by the load and its images; 0 at the others.
     ///
     /// The image sums have six digits.
-    pub(crate) fn far_from_load(&self, load: f64, place: &[f64; 2], reach: f64, targets: &[usize]) -> Vec<f64> {
+    pub(crate) fn far_from_load(
+        &self,
+        load: f64,
+        place: &[f64; 2],
+        reach: f64,
+        targets: &[usize],
+    ) -> Vec<f64> {
         let columns = self.columns(targets);
         let (place, moment) = (self.place(*place), self.moment(load));
         let mut sums = vec![[0.0; LANES]; columns.x.len()];
@@ -23,8 +30,9 @@ impl DirectSum {
         sums.as_flattened()[..targets.len()].to_vec()
     }
 
-    /// Displacement \[m\] at each of `targets` by loads next to one another, each where the target is farther than its reach, and by the images of their
-    /// sum at `centre` \[m\].
+    /// Displacement \[m\] at each of
+    /// `targets` by loads next to one another, each where the target is farther than its reach, and by the images of their sum at `centre`
+    /// \[m\].
     ///
     /// The image sums have six digits.
     pub(crate) fn of_loads(&self, loads: &[PointLoad], centre: &[f64; 2], targets: &[usize]) -> Vec<f64> {
@@ -79,7 +87,8 @@ impl DirectSum {
     }
 }
 
-/// Square of the distance over that of the reach from which a target is beyond it: rounding must not decide on one at the reach itself.
+/// Square of the distance over that of the reach from which a target is beyond it: rounding must not decide
+/// on one at the reach itself.
 const BEYOND: f64 = 1.0 + 1e-12;
 
 /// A load, and the distance beyond which it acts.
@@ -100,10 +109,16 @@ struct ShortLoad {
     reach: f32,
 }
 
-/// Fields of loads at targets, each beyond the reach of the load, with periodic images at a distance of `side`, or none at 0. Places from a centre have seven digits, displacements five or more: next to a load, its
-/// field as a point has two.
+/// Fields of loads at targets, each beyond the reach of the load, with periodic images at a distance of
+/// `side`, or none at 0. Places from a centre have seven digits, displacements five or more: next to a load,
+/// its field as a point has two.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn load_fields(loads: &[ShortLoad], targets: &[[[f32; SHORT_LANES]; 2]], side: f32, sums: &mut [[f32; SHORT_LANES]]) {
+fn load_fields(
+    loads: &[ShortLoad],
+    targets: &[[[f32; SHORT_LANES]; 2]],
+    side: f32,
+    sums: &mut [[f32; SHORT_LANES]],
+) {
     for ([x, y], sums) in targets.iter().zip(sums) {
         let mut sum = [0.0; SHORT_LANES];
         for load in loads {
@@ -165,12 +180,15 @@ mod tests {
 
     #[test]
     fn law_the_field_of_a_load_is_that_of_a_point() {
-        let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
-        let positions: Vec<[f64; 2]> = (0..29).map(|k| [f64::from(k * 7 % 29) * 3e-5, f64::from(k * 11 % 29) * 3.4e-5]).collect();
+        let material =
+            Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
+        let positions: Vec<[f64; 2]> =
+            (0..29).map(|k| [f64::from(k * 7 % 29) * 3e-5, f64::from(k * 11 % 29) * 3.4e-5]).collect();
         let (at, load, reach) = (positions[5], 4e-6, 2e-4);
         let spot = Spot { x: at[0], y: at[1], a: 1e-6, radius: 3e-5, load, load_slope: 0.1 };
         let targets: Vec<usize> = (0..29).collect();
-        let sum = |boundary| DirectSum::new(positions.clone(), 1e-3, &material, Kind::Point, boundary, Slips::NONE);
+        let sum =
+            |boundary| DirectSum::new(positions.clone(), 1e-3, &material, Kind::Point, boundary, Slips::NONE);
         let free = sum(Boundary::Isolated).at_many(&[(1.0, spot)], 0..29);
         let periodic = sum(Boundary::Periodic).at_many(&[(1.0, spot)], 0..29);
         for (boundary, wanted) in [(Boundary::Isolated, &free), (Boundary::Periodic, &periodic)] {
@@ -181,16 +199,20 @@ mod tests {
                     if boundary == Boundary::Periodic { d - 1e-3 * (d / 1e-3).round() } else { d }
                 });
                 let wanted = if apart[0].hypot(apart[1]) > reach { *wanted } else { 0.0 };
-                // Six digits of the images, of at most four times the displacement of the load at half a side.
+                // Six digits of the images, of at most four times the displacement of the load at half a
+                // side.
                 assert!((found - wanted).abs() <= 1e-5 * wanted.abs(), "{boundary:?}: {found:e} {wanted:e}");
             }
         }
-        // Of two loads at one place, only the one with a short reach acts within the long one, and both images do.
+        // Of two loads at one place, only the one with a short reach acts within the long one, and both
+        // images do.
         let share = |load_n: f64, reach_m: f64| PointLoad { place: at, load_n, reach_m };
         let loads = [share(0.25 * load, 0.0), share(0.75 * load, reach)];
         let found = sum(Boundary::Periodic).of_loads(&loads, &at, &targets);
         let near = sum(Boundary::Periodic).far_from_load(load, &at, reach, &targets);
-        for (((found, place), whole), near) in found.iter().zip(&positions).zip(periodic.iter().zip(&free)).zip(&near) {
+        for (((found, place), whole), near) in
+            found.iter().zip(&positions).zip(periodic.iter().zip(&free)).zip(&near)
+        {
             // Where the nearest image is the load itself, the images are the difference of the two squares.
             if *place != at && (0..2).all(|k| (place[k] - at[k]).abs() < 5e-4) {
                 let acting = if *near == 0.0 { 0.25 } else { 1.0 };

@@ -18,8 +18,8 @@ const MAX_CHANGE: f64 = 0.2;
 /// Maximum ratio of a spot's radius limit to the limit that a rebuild would assign.
 const MAX_LOOSENESS: f64 = 2.0;
 
-/// Number of targets from which on their chunks are distributed over threads, and number of chunks that one thread takes at least: fewer cost less than
-/// waking another thread.
+/// Number of targets from which on their chunks are distributed over threads, and number of chunks that one
+/// thread takes at least: fewer cost less than waking another thread.
 const PARALLEL_TARGETS: usize = 2048;
 const MIN_CHUNKS: usize = 16;
 
@@ -52,7 +52,8 @@ impl FastSum {
         let columns = &spots.columns;
         let length = self.measure.length;
         let kept = geometry.keep(self, spots, targets);
-        let shortest: Vec<Option<usize>> = geometry.limits.iter().map(|limit| self.shortest(*limit)).collect();
+        let shortest: Vec<Option<usize>> =
+            geometry.limits.iter().map(|limit| self.shortest(*limit)).collect();
         if kept.is_none() {
             geometry.finest = self.finest(&shortest, columns, targets.len());
             geometry.chosen_for = [spots.index.len(), targets.len()];
@@ -61,7 +62,10 @@ impl FastSum {
         let mut members: [Vec<usize>; CUTOFF_COUNT] = Default::default();
         let mut large = Vec::new();
         for (j, shortest) in shortest.iter().enumerate() {
-            shortest.and_then(|shortest| self.level(finest, shortest)).map_or(&mut large, |step| &mut members[step]).push(j);
+            shortest
+                .and_then(|shortest| self.level(finest, shortest))
+                .map_or(&mut large, |step| &mut members[step])
+                .push(j);
         }
         let changed = |members: &[usize]| match &kept {
             Some(kept) => members.iter().copied().filter(|j| !kept.stays[*j]).collect(),
@@ -103,17 +107,30 @@ impl FastSum {
         if targets.len() < PARALLEL_TARGETS {
             geometry.pairs.iter_mut().enumerate().zip(targets.chunks(TARGETS_PER_CHUNK)).for_each(find);
         } else {
-            geometry.pairs.par_iter_mut().enumerate().zip(targets.par_chunks(TARGETS_PER_CHUNK)).with_min_len(MIN_CHUNKS).for_each(find);
+            geometry
+                .pairs
+                .par_iter_mut()
+                .enumerate()
+                .zip(targets.par_chunks(TARGETS_PER_CHUNK))
+                .with_min_len(MIN_CHUNKS)
+                .for_each(find);
         }
         self.place_meshes(&levels, targets, kept.as_ref(), geometry);
     }
 
     /// Weights of spots and targets on the meshes.
-    fn place_meshes(&self, levels: &[(Arc<Plan>, Vec<usize>)], targets: &[usize], kept: Option<&Kept>, geometry: &mut Geometry) {
+    fn place_meshes(
+        &self,
+        levels: &[(Arc<Plan>, Vec<usize>)],
+        targets: &[usize],
+        kept: Option<&Kept>,
+        geometry: &mut Geometry,
+    ) {
         let length = self.measure.length;
         geometry.targets.clear();
         geometry.targets.extend_from_slice(targets);
-        let targets: Vec<[f64; 2]> = targets.iter().map(|target| self.order.positions[*target].map(|p| p / length)).collect();
+        let targets: Vec<[f64; 2]> =
+            targets.iter().map(|target| self.order.positions[*target].map(|p| p / length)).collect();
         let sources: Vec<[f64; 2]> = geometry.places.iter().map(|place| place.map(|p| p / length)).collect();
         geometry.fine.renew(levels, |plan| &plan.fine, &sources, &targets, kept);
         geometry.rough.renew(levels, |plan| &plan.rough, &sources, &targets, kept);
@@ -136,7 +153,8 @@ impl Geometry {
         let columns = &spots.columns;
         let near = |now: usize, then: usize| (now as f64 - then as f64).abs() <= MAX_CHANGE * then as f64;
         let same = self.accuracy == Some(field.accuracy);
-        let serves = same && near(spots.index.len(), self.chosen_for[0]) && near(targets.len(), self.chosen_for[1]);
+        let serves =
+            same && near(spots.index.len(), self.chosen_for[0]) && near(targets.len(), self.chosen_for[1]);
         let places: Vec<[f64; 2]> = (0..columns.len()).map(|j| [columns.x[j], columns.y[j]]).collect();
         let mut kept = serves.then(|| Kept {
             stays: vec![false; spots.index.len()],
@@ -148,7 +166,9 @@ impl Geometry {
             for (j, before) in places_in(&spots.index, &self.index).enumerate() {
                 let Some(before) = before else { continue };
                 let limit = self.limits[before];
-                if self.places[before] == places[j] && (columns.a[j]..MAX_LOOSENESS * limits[j]).contains(&limit) {
+                if self.places[before] == places[j]
+                    && (columns.a[j]..MAX_LOOSENESS * limits[j]).contains(&limit)
+                {
                     (kept.stays[j], kept.numbers[before], limits[j]) = (true, j as u32, limit);
                 }
             }
@@ -182,14 +202,26 @@ impl Geometry {
     }
 
     /// Displacements at the targets.
-    pub(super) fn displacements(&self, sources: &Sources, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
+    pub(super) fn displacements(
+        &self,
+        sources: &Sources,
+        work: &mut Work<f64>,
+        values: &mut [f64],
+        effort: &mut Effort,
+    ) {
         self.count(effort);
         for_chunks(&self.pairs, values, |pairs, values| pairs.sums(sources, values));
         self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
     }
 
     /// Displacements at the targets, and the derivatives for [`Self::product`].
-    pub(super) fn linearise(&mut self, sources: &Sources, work: &mut Work<f64>, values: &mut [f64], effort: &mut Effort) {
+    pub(super) fn linearise(
+        &mut self,
+        sources: &Sources,
+        work: &mut Work<f64>,
+        values: &mut [f64],
+        effort: &mut Effort,
+    ) {
         self.count(effort);
         for_chunks(&mut self.pairs, values, |pairs, values| pairs.linearise(sources, values));
         self.fine.add(Loads { moments: &sources.moments.value, factors: None }, work, values);
@@ -215,12 +247,17 @@ impl Geometry {
 /// Applies an operation to each chunk of targets and their values, on several threads if there are many.
 fn for_chunks<P>(pairs: P, values: &mut [f64], each: impl Fn(<P as IntoIterator>::Item, &mut [f64]) + Sync)
 where
-    P: IntoIterator<Item: Send> + IntoParallelIterator<Item = <P as IntoIterator>::Item, Iter: IndexedParallelIterator>,
+    P: IntoIterator<Item: Send>
+        + IntoParallelIterator<Item = <P as IntoIterator>::Item, Iter: IndexedParallelIterator>,
 {
     if values.len() < PARALLEL_TARGETS {
-        pairs.into_iter().zip(values.chunks_mut(TARGETS_PER_CHUNK)).for_each(|(pairs, values)| each(pairs, values));
+        pairs
+            .into_iter()
+            .zip(values.chunks_mut(TARGETS_PER_CHUNK))
+            .for_each(|(pairs, values)| each(pairs, values));
     } else {
-        let chunks = pairs.into_par_iter().zip(values.par_chunks_mut(TARGETS_PER_CHUNK)).with_min_len(MIN_CHUNKS);
+        let chunks =
+            pairs.into_par_iter().zip(values.par_chunks_mut(TARGETS_PER_CHUNK)).with_min_len(MIN_CHUNKS);
         chunks.for_each(|(pairs, values)| each(pairs, values));
     }
 }
@@ -239,7 +276,8 @@ impl<T, const W: usize, const O: usize> Default for Meshes<T, W, O> {
 }
 
 impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
-    /// Weights of sources by their plans, the finest first, and of targets, in units of the side. Those of kept ones stay.
+    /// Weights of sources by their plans, the finest first, and of targets, in units of the side. Those of
+    /// kept ones stay.
     ///
     /// `mesh` selects one of the meshes of a plan.
     fn renew(
@@ -255,7 +293,9 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
             let mesh = mesh(plan);
             let mut before = vec![None; sources.len()];
             let mut weights = &[][..];
-            if let (Some(kept), Some(known)) = (kept, old.levels.iter().find(|old| Arc::ptr_eq(&old.mesh, mesh))) {
+            if let (Some(kept), Some(known)) =
+                (kept, old.levels.iter().find(|old| Arc::ptr_eq(&old.mesh, mesh)))
+            {
                 weights = &known.sources.weights;
                 for (k, spot) in known.sources.numbers.iter().enumerate() {
                     // The number of a source that is gone is beyond the end.
@@ -266,13 +306,19 @@ impl<T: Real, const W: usize, const O: usize> Meshes<T, W, O> {
             }
             let places = members.iter().map(|j| (before[*j], sources[*j]));
             let weights = completed(weights, places, |places| splines(places, mesh.size));
-            self.levels.push(Level { mesh: mesh.clone(), sources: PlacedSources { numbers: members.clone(), weights } });
+            self.levels.push(Level {
+                mesh: mesh.clone(),
+                sources: PlacedSources { numbers: members.clone(), weights },
+            });
         }
         if let Some(Level { mesh, .. }) = self.levels.first() {
             let same = old.levels.first().is_some_and(|old| Arc::ptr_eq(&old.mesh, mesh));
             let kept = kept.filter(|_| same);
-            let places = targets.iter().enumerate().map(|(k, place)| (kept.and_then(|kept| kept.targets[k]), *place));
-            self.readers = completed(&old.readers, places, |places| splines(places, mesh.size).iter().map(Reader::new).collect());
+            let places =
+                targets.iter().enumerate().map(|(k, place)| (kept.and_then(|kept| kept.targets[k]), *place));
+            self.readers = completed(&old.readers, places, |places| {
+                splines(places, mesh.size).iter().map(Reader::new).collect()
+            });
         }
     }
 
@@ -291,7 +337,8 @@ fn completed<A: Copy>(
     places: impl Iterator<Item = (Option<usize>, [f64; 2])> + Clone,
     find: impl FnOnce(&[[f64; 2]]) -> Vec<A>,
 ) -> Vec<A> {
-    let unknown: Vec<[f64; 2]> = places.clone().filter(|(before, _)| before.is_none()).map(|(_, place)| place).collect();
+    let unknown: Vec<[f64; 2]> =
+        places.clone().filter(|(before, _)| before.is_none()).map(|(_, place)| place).collect();
     let mut found = find(&unknown).into_iter();
     let mut all = Vec::with_capacity(places.clone().count());
     // Known ones that follow one another are copied at once.

@@ -26,7 +26,10 @@ pub(super) struct Splines<T, const W: usize, const O: usize>([Spline<T, W, O>; 2
 
 /// B-spline weights of points, in units of the side, on a mesh.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-pub(super) fn splines<T: Real, const W: usize, const O: usize>(places: &[[f64; 2]], mesh: usize) -> Vec<Splines<T, W, O>> {
+pub(super) fn splines<T: Real, const W: usize, const O: usize>(
+    places: &[[f64; 2]],
+    mesh: usize,
+) -> Vec<Splines<T, W, O>> {
     places.iter().map(|place| Splines([spline(place[0], mesh), spline(place[1], mesh)])).collect()
 }
 
@@ -127,7 +130,11 @@ pub(super) struct Loads<'a> {
 /// Field of all sources on the finest mesh, left in the work space for [`read`].
 ///
 /// `levels` holds the sources of each mesh, the finest first.
-pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level<T, W, O>], loads: Loads<'_>, work: &mut Work<T>) {
+pub(super) fn transform<T: Real, const W: usize, const O: usize>(
+    levels: &[Level<T, W, O>],
+    loads: Loads<'_>,
+    work: &mut Work<T>,
+) {
     let Some(Level { mesh: finest, .. }) = levels.first() else { return };
     let n = finest.size;
     let half = n / 2 + 1;
@@ -156,7 +163,10 @@ pub(super) fn transform<T: Real, const W: usize, const O: usize>(levels: &[Level
             *value = *value * (along * *across);
         }
     }
-    work.scratch.resize(finest.columns_back.get_inplace_scratch_len().max(finest.rows_back.get_scratch_len()), Complex::default());
+    work.scratch.resize(
+        finest.columns_back.get_inplace_scratch_len().max(finest.rows_back.get_scratch_len()),
+        Complex::default(),
+    );
     finest.columns_back.process_with_scratch(&mut work.total, &mut work.scratch);
     work.lines.resize(half * n, Complex::default());
     turn(&work.total, &mut work.lines, half, n);
@@ -211,7 +221,8 @@ fn forward<T: Real, const W: usize, const O: usize>(
     }
     work.lines.resize(half * n, Complex::default());
     work.turned.resize(half * n, Complex::default());
-    work.scratch.resize(mesh.columns.get_inplace_scratch_len().max(mesh.rows.get_scratch_len()), Complex::default());
+    work.scratch
+        .resize(mesh.columns.get_inplace_scratch_len().max(mesh.rows.get_scratch_len()), Complex::default());
     for (i, line) in work.lines.chunks_mut(half).enumerate() {
         let row = &mut work.points[(i + before(W)) * stride + before(W)..][..n];
         if mesh.rows.process_with_scratch(row, line, &mut work.scratch).is_err() {
@@ -245,7 +256,8 @@ fn spread<T: Real, const W: usize, const O: usize>(
     mesh: usize,
     points: &mut [T],
 ) {
-    const BINOMIALS: [[f64; ORDERS]; ORDERS] = [[1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 0.0], [1.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
+    const BINOMIALS: [[f64; ORDERS]; ORDERS] =
+        [[1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 0.0], [1.0, 3.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
     let stride = mesh + W - 1;
     let mut scales = [1.0; ORDERS];
     for (m, scale) in scales.iter_mut().enumerate() {
@@ -284,7 +296,12 @@ fn spread<T: Real, const W: usize, const O: usize>(
 
 /// Adds the field in the work space, interpolated at the targets, to `values`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-pub(super) fn read<T: Real, const W: usize>(readers: &[Reader<T, W>], mesh: usize, work: &Work<T>, values: &mut [f64]) {
+pub(super) fn read<T: Real, const W: usize>(
+    readers: &[Reader<T, W>],
+    mesh: usize,
+    work: &Work<T>,
+    values: &mut [f64],
+) {
     let stride = mesh + W - 1;
     for (reader, value) in readers.iter().zip(values) {
         let mut strands = [T::default(); W];

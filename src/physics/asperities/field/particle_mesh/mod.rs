@@ -1,15 +1,15 @@
 //! Fast sum in n log n: near pairs exactly, the smooth far field on a mesh.
 //!
-//! Ewald splitting (Darden, York & Pedersen, J. Chem. Phys. 98:10089, 1993; Essmann et al., 103:8577, 1995) of a field
-//! with the far-field expansion `Σ_m c_m/r^(2m+1)`, m = 0 … 3 ([`super::multipole`]).
-//! As `∇^2m (1/r) = [(2m−1)!!]²/r^(2m+1)` in the plane, the smooth field of a spot is
-//! `Σ_m c_m ∇^2m(erf(αr)/r)/[(2m−1)!!]²`: one kernel, whose sources are a spot's load and Laplacians of it.
-//! Within the cutoff `r_c` of a source its field is exact, less the smooth field of its nearest image.
-//! The smooth fields of all sources and images come from a mesh.
+//! Ewald splitting (Darden, York & Pedersen, J. Chem. Phys. 98:10089, 1993; Essmann et al., 103:8577, 1995)
+//! of a field with the far-field expansion `Σ_m c_m/r^(2m+1)`, m = 0 … 3 ([`super::multipole`]). As `∇^2m
+//! (1/r) = [(2m−1)!!]²/r^(2m+1)` in the plane, the smooth field of a spot is `Σ_m c_m
+//! ∇^2m(erf(αr)/r)/[(2m−1)!!]²`: one kernel, whose sources are a spot's load and Laplacians of it. Within the cutoff `r_c`
+//! of a source its field is exact, less the smooth field of its nearest image. The smooth fields of all
+//! sources and images come from a mesh.
 //!
-//! The radius of a spot must be small compared with its cutoff, so sources are grouped by radius.
-//! Each group has twice the cutoff of the previous one and a mesh half as fine, so one large spot adds only one long list.
-//! Spots too large for any mesh act on all targets by their exact field.
+//! The radius of a spot must be small compared with its cutoff, so sources are grouped by radius. Each group
+//! has twice the cutoff of the previous one and a mesh half as fine, so one large spot adds only one long
+//! list. Spots too large for any mesh act on all targets by their exact field.
 //!
 //! An isolated square has no images. It is embedded in an empty square of [`ROOM`] times its side.
 //! The smooth field of each source on the mesh is windowed to zero before the next image begins ([`plan`]).
@@ -114,14 +114,20 @@ impl FastSum {
     }
 
     fn plan(&self, step: usize) -> Arc<Plan> {
-        self.plans[step].get_or_init(|| Arc::new(Plan::new(self.accuracy, CUTOFF[step], self.measure.boundary))).clone()
+        self.plans[step]
+            .get_or_init(|| Arc::new(Plan::new(self.accuracy, CUTOFF[step], self.measure.boundary)))
+            .clone()
     }
 
     /// Index of the shortest cutoff allowed for a spot of radius `a` \[m\].
     ///
     /// `None` if the spot is too large for all.
     fn shortest(&self, a: f64) -> Option<usize> {
-        let least = if self.measure.kind == Kind::Spots { a / (self.accuracy.girth * self.measure.length) } else { 0.0 };
+        let least = if self.measure.kind == Kind::Spots {
+            a / (self.accuracy.girth * self.measure.length)
+        } else {
+            0.0
+        };
         CUTOFF.iter().rposition(|reach| *reach >= least).filter(|step| *step >= self.longest())
     }
 
@@ -129,13 +135,19 @@ impl FastSum {
     fn longest(&self) -> usize {
         match self.measure.boundary {
             Boundary::Periodic => 0,
-            Boundary::Isolated => CUTOFF.iter().position(|reach| *reach <= LONGEST_CUTOFF_ISOLATED).unwrap_or(CUTOFF_COUNT - 1),
+            Boundary::Isolated => {
+                CUTOFF.iter().position(|reach| *reach <= LONGEST_CUTOFF_ISOLATED).unwrap_or(CUTOFF_COUNT - 1)
+            }
         }
     }
 
     /// Longest of the cutoffs `finest`, `finest` − 2, … that is no shorter than `shortest`, if any.
     fn level(&self, finest: usize, shortest: usize) -> Option<usize> {
-        let step = if finest <= shortest { Some(finest) } else { (shortest + 1 - (finest - shortest) % 2).checked_sub(1) };
+        let step = if finest <= shortest {
+            Some(finest)
+        } else {
+            (shortest + 1 - (finest - shortest) % 2).checked_sub(1)
+        };
         step.filter(|step| *step >= self.longest())
     }
 
@@ -172,11 +184,19 @@ impl FastSum {
     /// Sources of the exact fields and of the moments.
     fn sources(&self, spots: &Spots) -> Sources {
         let columns = &spots.columns;
-        let shape = |j: usize| [columns.a[j], columns.root_a[j], columns.inverse_root_a[j], columns.inverse_radius[j]];
+        let shape = |j: usize| {
+            [columns.a[j], columns.root_a[j], columns.inverse_root_a[j], columns.inverse_radius[j]]
+        };
         Sources {
             measure: self.measure,
             shapes: (0..columns.len()).map(shape).collect(),
-            moments: Moments::of(self.measure.kind, columns, self.measure.pull, self.compliance, self.measure.length),
+            moments: Moments::of(
+                self.measure.kind,
+                columns,
+                self.measure.pull,
+                self.compliance,
+                self.measure.length,
+            ),
         }
     }
 
@@ -205,7 +225,13 @@ fn clustering(columns: &SpotColumns, length: f64) -> [f64; CUTOFF_COUNT] {
 }
 
 impl Interaction for FastSum {
-    fn displacements(&self, spots: &Spots, targets: &[usize], displacements: &mut Vec<f64>, effort: &mut Effort) {
+    fn displacements(
+        &self,
+        spots: &Spots,
+        targets: &[usize],
+        displacements: &mut Vec<f64>,
+        effort: &mut Effort,
+    ) {
         displacements.clear();
         displacements.resize(targets.len(), 0.0);
         if self.acts(spots) {
@@ -243,13 +269,23 @@ impl Interaction for FastSum {
             geometry.linearise(&sources, fine, &mut values, effort);
             outward(&targets.from, &values, displacements);
             values.fill(0.0);
-            geometry.fine_product(Loads { moments: &sources.moments.slope, factors: Some(x) }, fine, &mut values);
+            geometry.fine_product(
+                Loads { moments: &sources.moments.slope, factors: Some(x) },
+                fine,
+                &mut values,
+            );
             outward(&targets.from, &values, slopes);
             kept.set_sparse(sparse);
         }
     }
 
-    fn linearise(&self, spots: &Spots, displacements: &mut Vec<f64>, tangent: &mut Tangent, effort: &mut Effort) {
+    fn linearise(
+        &self,
+        spots: &Spots,
+        displacements: &mut Vec<f64>,
+        tangent: &mut Tangent,
+        effort: &mut Effort,
+    ) {
         displacements.clear();
         displacements.resize(spots.index.len(), 0.0);
         if !self.acts(spots) {
@@ -304,7 +340,11 @@ impl Sparse {
         let rough = &mut *self.rough.borrow_mut();
         inward(&self.from, x, &mut rough.x);
         rough.y.resize(x.len(), 0.0);
-        self.geometry.product(Loads { moments: &self.slopes, factors: Some(&rough.x) }, &mut rough.work, &mut rough.y);
+        self.geometry.product(
+            Loads { moments: &self.slopes, factors: Some(&rough.x) },
+            &mut rough.work,
+            &mut rough.y,
+        );
         outward(&self.from, &rough.y, y);
     }
 

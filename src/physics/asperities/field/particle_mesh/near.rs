@@ -73,7 +73,8 @@ impl Group {
         };
         // Three cells per cutoff, but no more cells than sources.
         let cells = ((3.0 / reach) as usize).min((members.len() as f64).sqrt().ceil() as usize).max(1);
-        let cell = |j: usize| cell_of(columns.x[j], length, cells) * cells + cell_of(columns.y[j], length, cells);
+        let cell =
+            |j: usize| cell_of(columns.x[j], length, cells) * cells + cell_of(columns.y[j], length, cells);
         let mut starts = vec![0; cells * cells + 1];
         for &j in members {
             starts[cell(j) + 1] += 1;
@@ -134,9 +135,17 @@ impl Group {
     ///
     /// They are minus the mesh field, or the sums over the other images.
     #[inline(always)]
-    pub(super) fn rest_at(&self, measure: Measure, place: [f64; 2], number: usize, square: f64) -> [f64; ORDERS] {
+    pub(super) fn rest_at(
+        &self,
+        measure: Measure,
+        place: [f64; 2],
+        number: usize,
+        square: f64,
+    ) -> [f64; ORDERS] {
         match &self.rest {
-            Rest::Mesh(plan) => plan.smooth.at(square / (plan.reach * measure.length).powi(2)).map(|sum| -sum),
+            Rest::Mesh(plan) => {
+                plan.smooth.at(square / (plan.reach * measure.length).powi(2)).map(|sum| -sum)
+            }
             Rest::Images => {
                 let [dx, dy] = [place[0] - self.x[number], place[1] - self.y[number]].map(|d| {
                     let share = d / measure.length;
@@ -156,7 +165,16 @@ fn cell_of(coordinate: f64, length: f64, cells: usize) -> usize {
 
 #[allow(clippy::too_many_arguments)]
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn search(x: &[f64], y: &[f64], from: usize, length: f64, place: [f64; 2], reach2: f64, found: &mut Vec<usize>, squares: &mut Vec<f64>) {
+fn search(
+    x: &[f64],
+    y: &[f64],
+    from: usize,
+    length: f64,
+    place: [f64; 2],
+    reach2: f64,
+    found: &mut Vec<usize>,
+    squares: &mut Vec<f64>,
+) {
     let start = found.len();
     // Write every candidate and advance the count only for near ones: no unpredictable branch.
     found.resize(start + x.len(), 0);

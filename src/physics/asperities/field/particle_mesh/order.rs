@@ -34,9 +34,13 @@ impl Order {
 
     /// Ranks of the given asperities, sorted.
     pub(super) fn of(&self, numbers: &[usize]) -> Ordered {
-        let mut pairs: Vec<(u32, u32)> = numbers.iter().enumerate().map(|(k, i)| (self.ranks[*i], k as u32)).collect();
+        let mut pairs: Vec<(u32, u32)> =
+            numbers.iter().enumerate().map(|(k, i)| (self.ranks[*i], k as u32)).collect();
         pairs.sort_unstable();
-        Ordered { ranks: pairs.iter().map(|pair| pair.0 as usize).collect(), from: pairs.iter().map(|pair| pair.1 as usize).collect() }
+        Ordered {
+            ranks: pairs.iter().map(|pair| pair.0 as usize).collect(),
+            from: pairs.iter().map(|pair| pair.1 as usize).collect(),
+        }
     }
 
     /// Spots in Z-order, identified by rank, and their original positions.

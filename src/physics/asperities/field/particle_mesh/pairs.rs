@@ -1,6 +1,7 @@
 //! Near pairs: data that depend on the positions alone, reused while the same spots are in contact.
 //!
-//! Beyond several radii a spot acts by its moments, four numbers per pair. Nearer spots act by their exact fields.
+//! Beyond several radii a spot acts by its moments, four numbers per pair. Nearer spots act by their exact
+//! fields.
 
 use super::near::{Found, Group, Measure};
 use crate::asperities::field::ewald::ORDERS;
@@ -68,7 +69,14 @@ impl Pairs {
     /// Searches the near pairs of targets.
     ///
     /// Source k acts by its moments from `aloof[k]` \[m\] on.
-    pub(super) fn find(&mut self, targets: impl Iterator<Item = Target>, known: Known<'_>, all: &[Group], measure: Measure, aloof: &[f64]) {
+    pub(super) fn find(
+        &mut self,
+        targets: impl Iterator<Item = Target>,
+        known: Known<'_>,
+        all: &[Group],
+        measure: Measure,
+        aloof: &[f64],
+    ) {
         self.starts.clear();
         self.exact.clear();
         self.spots.clear();
@@ -113,10 +121,13 @@ impl Pairs {
             return;
         }
         self.reserve(to - from);
-        for (spot, at) in old.spots[from..middle].iter().map(number).zip(exact).filter(|(spot, _)| *spot != GONE) {
+        for (spot, at) in
+            old.spots[from..middle].iter().map(number).zip(exact).filter(|(spot, _)| *spot != GONE)
+        {
             self.push_exact(spot, old.r[at], old.rest[at]);
         }
-        for (spot, at) in old.spots[middle..to].iter().map(number).zip(far).filter(|(spot, _)| *spot != GONE) {
+        for (spot, at) in old.spots[middle..to].iter().map(number).zip(far).filter(|(spot, _)| *spot != GONE)
+        {
             self.push_far(spot, old.kernel[at], old.low[at]);
         }
     }
@@ -186,10 +197,17 @@ fn enter(
     pairs.reserve(found.numbers.len());
     // All factors first, in a loop without branches.
     rests.clear();
-    rests.extend(found.numbers.iter().zip(&found.r2).map(|(number, square)| group.rest_at(measure, place, *number, *square)));
+    rests.extend(
+        found
+            .numbers
+            .iter()
+            .zip(&found.r2)
+            .map(|(number, square)| group.rest_at(measure, place, *number, *square)),
+    );
     for ((&number, &square), &rest) in found.numbers.iter().zip(&found.r2).zip(&*rests) {
         let spot = group.spots[number];
-        // A spot does not act on its own centre: its distance is set to `AWAY`, and the mesh field is subtracted in full precision.
+        // A spot does not act on its own centre: its distance is set to `AWAY`, and the mesh field is
+        // subtracted in full precision.
         let r = if square > 0.0 { square.sqrt() } else { AWAY };
         if r < aloof[spot] || square == 0.0 {
             pairs.push_exact(spot as u32, r, rest);
@@ -224,8 +242,10 @@ fn evaluate<const SLOPES: bool>(pairs: &Pairs, sources: &Sources, values: &mut [
             let r = lanes.map(|lane| pairs.r[at + lane]);
             let inverse_r = r.map(|r| 1.0 / r);
             let shapes = lanes.map(|lane| sources.shapes[spots[lane] as usize]);
-            let [a, root_a, inverse_root_a, curvature] = std::array::from_fn(|k| shapes.map(|shape| shape[k]));
-            let (fields, rates) = field_at(&r, &inverse_r, &a, &root_a, &inverse_root_a, &curvature, pull, sag);
+            let [a, root_a, inverse_root_a, curvature] =
+                std::array::from_fn(|k| shapes.map(|shape| shape[k]));
+            let (fields, rates) =
+                field_at(&r, &inverse_r, &a, &root_a, &inverse_root_a, &curvature, pull, sag);
             for (lane, (spot, rest)) in spots.iter().zip(&pairs.rest[at..at + count]).enumerate() {
                 let spot = *spot as usize;
                 all[lane] += fields[lane] + product(rest, &sources.moments.value[spot]);
@@ -263,7 +283,8 @@ fn evaluate<const SLOPES: bool>(pairs: &Pairs, sources: &Sources, values: &mut [
 fn multiply(starts: &[usize], spots: &[u32], slopes: &[f32], x: &[f64], y: &mut [f64]) {
     for (ends, yi) in starts.windows(2).zip(y.iter_mut()) {
         let mut strands = [0.0; 4];
-        let ((spots, left), (slopes, over)) = (spots[ends[0]..ends[1]].as_chunks::<4>(), slopes[ends[0]..ends[1]].as_chunks::<4>());
+        let ((spots, left), (slopes, over)) =
+            (spots[ends[0]..ends[1]].as_chunks::<4>(), slopes[ends[0]..ends[1]].as_chunks::<4>());
         for (spot, slope) in spots.iter().zip(slopes) {
             // All loads first, then one operation on all lanes.
             let (slope, x) = (slope.map(f64::from), spot.map(|spot| x[spot as usize]));

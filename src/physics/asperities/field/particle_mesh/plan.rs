@@ -56,7 +56,8 @@ pub(super) const LAPLACIANS: [f64; ORDERS] = [1.0, 1.0, 9.0, 225.0];
 
 /// Pieces of the smooth field between its centre and the cutoff, and terms of each.
 ///
-/// The argument of the exponentials changes by 0.4 within a piece, so one more term reduces the error by a factor of about 70.
+/// The argument of the exponentials changes by 0.4 within a piece, so one more term reduces the error by a
+/// factor of about 70.
 const PIECES: usize = 64;
 const TERMS: usize = 7;
 
@@ -67,7 +68,8 @@ pub(super) struct Accuracy {
     edge: f64,
     /// Highest wavenumber of the mesh over `2α`, for displacements and for derivatives.
     waves: [f64; 2],
-    /// Maximum contact radius over cutoff for which four orders of the far field are enough beyond the cutoff.
+    /// Maximum contact radius over cutoff for which four orders of the far field are enough beyond the
+    /// cutoff.
     pub(super) girth: f64,
     /// Distance over radius from which the moments represent a spot's field.
     pub(super) aloof: f64,
@@ -76,11 +78,11 @@ pub(super) struct Accuracy {
 impl Accuracy {
     /// Parameters for displacements with errors up to `tolerance` times the largest one.
     ///
-    /// Three errors contribute. Beyond the cutoff, `erfc(αr)` of a field is neglected.
-    /// A B-spline of order p aliases a mode at the fraction t of the mesh's highest wavenumber with the weight `(t/(2 − t))^p`.
-    /// The mode itself has the amplitude `e^(−(q/2α)²)`. Beyond `r = r_c` the far field lacks `0.03 (a/r)⁸`.
-    /// Each error is relative to a field at the cutoff, which is a small part of the largest displacement.
-    /// The measured total is below the tolerance in every case (3e-9 at 1e-8).
+    /// Three errors contribute. Beyond the cutoff,
+    /// `erfc(αr)` of a field is neglected. A B-spline of order p aliases a mode at the fraction t of the mesh's highest wavenumber with the weight `(t/(2
+    /// − t))^p`. The mode itself has the amplitude `e^(−(q/2α)²)`. Beyond `r = r_c` the far field lacks
+    /// `0.03 (a/r)⁸`. Each error is relative to a field at the cutoff, which is a small part of the largest
+    /// displacement. The measured total is below the tolerance in every case (3e-9 at 1e-8).
     pub(super) fn of(tolerance: f64) -> Self {
         let tolerance = tolerance.clamp(1e-13, 1e-2);
         let mut edge = 1.0;
@@ -103,7 +105,10 @@ impl Accuracy {
         let aloof = (0.03 / (4.0 * tolerance)).powf(0.125).max(3.0);
         Self {
             edge,
-            waves: [waves(WIDTH, tolerance).max(edge), waves(INTERMEDIATE_WIDTH, DERIVATIVE_TOLERANCE.max(tolerance))],
+            waves: [
+                waves(WIDTH, tolerance).max(edge),
+                waves(INTERMEDIATE_WIDTH, DERIVATIVE_TOLERANCE.max(tolerance)),
+            ],
             girth,
             aloof,
         }
@@ -125,7 +130,12 @@ impl Smooth {
         let pieces = (0..PIECES)
             .map(|piece| {
                 let samples: Vec<_> = (0..TERMS)
-                    .map(|k| smooth(alpha, reach * reach * (piece as f64 + 0.5 + 0.5 * angle(k).cos()) / PIECES as f64))
+                    .map(|k| {
+                        smooth(
+                            alpha,
+                            reach * reach * (piece as f64 + 0.5 + 0.5 * angle(k).cos()) / PIECES as f64,
+                        )
+                    })
                     .collect();
                 // Chebyshev series, converted to powers by Clenshaw's recurrence on polynomials.
                 let (mut next, mut after) = ([[0.0; ORDERS]; TERMS], [[0.0; ORDERS]; TERMS]);
@@ -133,7 +143,8 @@ impl Smooth {
                     let scale = if n == 0 { 1.0 } else { 2.0 } / TERMS as f64;
                     let mut value = [[0.0; ORDERS]; TERMS];
                     for m in 0..ORDERS {
-                        let sum: f64 = samples.iter().enumerate().map(|(k, s)| s[m] * (n as f64 * angle(k)).cos()).sum();
+                        let sum: f64 =
+                            samples.iter().enumerate().map(|(k, s)| s[m] * (n as f64 * angle(k)).cos()).sum();
                         value[0][m] = scale * sum;
                         let factor = if n == 0 { 1.0 } else { 2.0 };
                         for p in 0..TERMS {
@@ -172,7 +183,8 @@ impl Smooth {
 /// Uses `∇^2m e^(−βr²) = (−4β)^m m! L_m(βr²) e^(−βr²)` in the plane.
 fn smooth(alpha: f64, r2: f64) -> [f64; ORDERS] {
     /// Coefficients of `m! L_m`.
-    const LAGUERRE: [[f64; ORDERS]; ORDERS] = [[1.0, 0.0, 0.0, 0.0], [1.0, -1.0, 0.0, 0.0], [2.0, -4.0, 1.0, 0.0], [6.0, -18.0, 9.0, -1.0]];
+    const LAGUERRE: [[f64; ORDERS]; ORDERS] =
+        [[1.0, 0.0, 0.0, 0.0], [1.0, -1.0, 0.0, 0.0], [2.0, -4.0, 1.0, 0.0], [6.0, -18.0, 9.0, -1.0]];
     let v = alpha * alpha * r2;
     // ∫₀¹ t^2p e^(−v t²) dt = ½ e^(−v) Σ_k v^k/((p+½)(p+3/2) … (p+½+k)): all terms positive.
     let integral = |p: usize| {
@@ -254,7 +266,12 @@ impl Plan {
             reach,
             smooth: Smooth::new(alpha, reach),
             fine: Arc::new(Mesh::new(size(accuracy.waves[0], WIDTH), alpha, WIDTH, boundary)),
-            rough: Arc::new(Mesh::new(size(accuracy.waves[1], INTERMEDIATE_WIDTH), alpha, INTERMEDIATE_WIDTH, boundary)),
+            rough: Arc::new(Mesh::new(
+                size(accuracy.waves[1], INTERMEDIATE_WIDTH),
+                alpha,
+                INTERMEDIATE_WIDTH,
+                boundary,
+            )),
         }
     }
 }
@@ -314,14 +331,16 @@ fn waves_of_all(n: usize, alpha: f64) -> Vec<f64> {
 
 /// Fourier modes of `erf(αr)/r` alone, windowed beyond the range that an isolated square needs.
 ///
-/// The window falls off as `erfc(αx)` along both directions, so a mesh that resolves the field resolves the window.
-/// The gap between two squares leaves one cutoff for the window to fall and one for the next image to rise.
+/// The window falls off as `erfc(αx)` along both directions, so a mesh that resolves the field resolves the
+/// window. The gap between two squares leaves one cutoff for the window to fall and one for the next image to
+/// rise.
 fn waves_of_one(n: usize, alpha: f64) -> Vec<f64> {
     let middle = 0.5 * (1.0 / ROOM + 0.5);
     let along = |k: usize| wave(k, n).abs() / n as f64;
     let window: Vec<f64> = (0..n).map(|k| 0.5 * libm::erfc(alpha * (along(k) - middle))).collect();
     let kernel = |r: f64| if r > 0.0 { libm::erf(alpha * r) / r } else { 2.0 * alpha / PI.sqrt() };
-    let point = |i: usize, j: usize| Complex::new(kernel(along(i).hypot(along(j))) * window[i] * window[j], 0.0);
+    let point =
+        |i: usize, j: usize| Complex::new(kernel(along(i).hypot(along(j))) * window[i] * window[j], 0.0);
     let mut points: Vec<Complex<f64>> = (0..n * n).map(|k| point(k / n, k % n)).collect();
     let lines = FftPlanner::new().plan_fft_forward(n);
     lines.process(&mut points);

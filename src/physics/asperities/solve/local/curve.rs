@@ -1,8 +1,8 @@
 //! Events on the solution curve of a local problem.
 //!
-//! The radius of a contact is the better parameter of the curve: at a fold Δ reverses and the radius continues; where a contact reaches the
-//! centre of another, the field has an infinite slope in that radius alone. So an event of a contact is found with its radius held and Δ
-//! unknown; a fold is a zero of `dΔ/da`.
+//! The radius of a contact is the better parameter of the curve: at a fold Δ reverses and the radius
+//! continues; where a contact reaches the centre of another, the field has an infinite slope in that radius
+//! alone. So an event of a contact is found with its radius held and Δ unknown; a fold is a zero of `dΔ/da`.
 
 use super::{CurveState, Hold, LocalProblem};
 use crate::asperities::contact::problem::Problem;
@@ -55,7 +55,12 @@ impl LocalProblem {
     }
 
     /// Follows a member to a radius, until Δ reverses or has passed the target.
-    pub(crate) fn trace_curve(&mut self, problem: &Problem, search: CurveSearch, effort: &mut Effort) -> Result<CurveEnd, NotConverged> {
+    pub(crate) fn trace_curve(
+        &mut self,
+        problem: &Problem,
+        search: CurveSearch,
+        effort: &mut Effort,
+    ) -> Result<CurveEnd, NotConverged> {
         let CurveSearch { member: at, bound, target, path_sense } = search;
         let sense = (bound - self.radius[at]).signum();
         let ahead = sense * path_sense;
@@ -68,7 +73,8 @@ impl LocalProblem {
         }
         // Near a fold the radius changes twice as fast as its rate predicts.
         let left = (target - self.mean_penetration).abs();
-        let mut stride = (2.0 * left / before.slope.abs()).clamp(1e-4 * self.radius[at], 0.2 * self.radius[at]);
+        let mut stride =
+            (2.0 * left / before.slope.abs()).clamp(1e-4 * self.radius[at], 0.2 * self.radius[at]);
         let beyond = loop {
             let left = (bound - before.at).abs();
             let next = if left <= stride { bound } else { before.at + sense * stride };
@@ -97,7 +103,11 @@ impl LocalProblem {
             }
         };
         self.bracket(problem, at, before, beyond, effort)?;
-        Ok(if (self.mean_penetration - target) * path_sense > 0.0 { CurveEnd::Beyond } else { CurveEnd::Fold })
+        Ok(if (self.mean_penetration - target) * path_sense > 0.0 {
+            CurveEnd::Beyond
+        } else {
+            CurveEnd::Fold
+        })
     }
 
     /// The fold between two states of the curve, by the Illinois rule on `dΔ/da`.
@@ -136,6 +146,12 @@ impl LocalProblem {
 
     fn point(&mut self, problem: &Problem, at: usize) -> CurveState {
         let (direction, slope) = self.along(problem, at);
-        CurveState { radius: self.radius.clone(), mean_penetration: self.mean_penetration, direction, slope, at: self.radius[at] }
+        CurveState {
+            radius: self.radius.clone(),
+            mean_penetration: self.mean_penetration,
+            direction,
+            slope,
+            at: self.radius[at],
+        }
     }
 }

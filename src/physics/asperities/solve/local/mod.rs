@@ -1,8 +1,10 @@
-//! Local problem of an event: the contacts next to it as unknowns, the displacement by all others to first order in Δ.
+//! Local problem of an event: the contacts next to it as unknowns, the displacement by all others to first
+//! order in Δ.
 //!
-//! An event changes its neighbours strongly and the rest of the contact weakly, since its neighbours lose what it gains: the response
-//! decays within a few spacings. The global problem is solved at the end of each increment, and the difference is measured (see
-//! [`crate::asperities::path`]). A local problem that holds all contacts has no difference.
+//! An event changes its neighbours strongly and the rest of the contact weakly, since its neighbours lose
+//! what it gains: the response decays within a few spacings. The global problem is solved at the end of each
+//! increment, and the difference is measured (see [`crate::asperities::path`]). A local problem that holds
+//! all contacts has no difference.
 
 pub(crate) mod curve;
 pub(crate) mod outside;
@@ -42,7 +44,8 @@ pub(crate) struct CurveState {
     pub(crate) at: f64,
 }
 
-/// Quantity that is held while a local problem is solved. Unless it is the mean penetration, that is an unknown.
+/// Quantity that is held while a local problem is solved. Unless it is the mean penetration, that is an
+/// unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
     /// Mean penetration.
@@ -114,8 +117,8 @@ struct Workspace {
 }
 
 impl LocalProblem {
-    /// Gathers contacts and free asperities at a mean penetration \[m\], with their predictors and the radii of the contacts \[m\]; both
-    /// lists ascend.
+    /// Gathers contacts and free asperities at a mean penetration \[m\], with their predictors and the radii
+    /// of the contacts \[m\]; both lists ascend.
     pub(crate) fn gather(
         &mut self,
         problem: &Problem,
@@ -141,7 +144,8 @@ impl LocalProblem {
         for (k, (i, trace, _)) in contacts.iter().enumerate() {
             let (asperity, a) = (&problem.asperities[*i], self.radius[k]);
             let displaced = mean_penetration + problem.heights[*i] - asperity.penetration(a);
-            let by_members: f64 = self.slopes[k * n..(k + 1) * n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
+            let by_members: f64 =
+                self.slopes[k * n..(k + 1) * n].iter().zip(&speeds).map(|(s, v)| s * v).sum();
             self.members[k].outside = displaced - self.field[k];
             self.members[k].drift = bounded(1.0 - trace.rate - by_members);
         }
@@ -156,7 +160,8 @@ impl LocalProblem {
         });
     }
 
-    /// Residual below which it is in equilibrium \[m\]. With contacts outside, whose response is known to first order, the tolerance is larger.
+    /// Residual below which it is in equilibrium \[m\]. With contacts outside, whose response is known to
+    /// first order, the tolerance is larger.
     pub(crate) fn tolerance_m(&self, problem: &Problem) -> f64 {
         match self.extent {
             Extent::Whole => problem.tolerance_m(),
@@ -191,8 +196,16 @@ impl LocalProblem {
         self.watched.extend(place);
     }
 
-    /// An asperity with a known displacement at the present mean penetration \[m\]; `drift` is the rate of its part by the outside.
-    pub(crate) fn place(&mut self, problem: &Problem, asperity: usize, displacement: f64, drift: f64, effort: &mut Effort) -> OutsideField {
+    /// An asperity with a known displacement at the present mean penetration \[m\]; `drift` is the rate of
+    /// its part by the outside.
+    pub(crate) fn place(
+        &mut self,
+        problem: &Problem,
+        asperity: usize,
+        displacement: f64,
+        drift: f64,
+        effort: &mut Effort,
+    ) -> OutsideField {
         let field = self.field_at(problem, asperity, effort);
         let outside = displacement - field - drift * (self.mean_penetration - self.reference);
         OutsideField { asperity, outside, drift }
@@ -214,10 +227,12 @@ impl LocalProblem {
         place.outside + place.drift * (self.mean_penetration - self.reference)
     }
 
-    /// Evaluates fields, slopes and residuals of the members; returns the largest residual with its asperity. Fields of the same radii are kept.
+    /// Evaluates fields, slopes and residuals of the members; returns the largest residual with its asperity.
+    /// Fields of the same radii are kept.
     pub(crate) fn evaluate(&mut self, problem: &Problem, effort: &mut Effort) -> NotConverged {
         let Spots { index, columns } = &self.work.spots;
-        let same = self.members.iter().map(|m| &m.asperity).eq(index) && columns.a[..columns.len()] == self.radius;
+        let same =
+            self.members.iter().map(|m| &m.asperity).eq(index) && columns.a[..columns.len()] == self.radius;
         if !same {
             self.evaluate_fields(problem, effort);
         }
@@ -238,17 +253,32 @@ impl LocalProblem {
 
     /// Evaluates the displacements at the members by one another, and their derivatives.
     fn evaluate_fields(&mut self, problem: &Problem, effort: &mut Effort) {
-        problem.columns(self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()), &mut self.work.spots);
+        problem.columns(
+            self.members.iter().map(|m| m.asperity).zip(self.radius.iter().copied()),
+            &mut self.work.spots,
+        );
         self.work.rates = None;
         self.field.clear();
         self.slopes.clear();
         match self.extent {
-            Extent::Part => problem.field.among(&self.work.spots, &mut self.work.pairs, &mut self.field, &mut self.slopes, effort),
+            Extent::Part => problem.field.among(
+                &self.work.spots,
+                &mut self.work.pairs,
+                &mut self.field,
+                &mut self.slopes,
+                effort,
+            ),
             Extent::Whole => {
-                problem.field.rows(&self.work.spots, &self.work.spots.index, SumPrecision::Full, effort, |_, sum, slopes| {
-                    self.field.push(sum);
-                    self.slopes.extend_from_slice(slopes);
-                });
+                problem.field.rows(
+                    &self.work.spots,
+                    &self.work.spots.index,
+                    SumPrecision::Full,
+                    effort,
+                    |_, sum, slopes| {
+                        self.field.push(sum);
+                        self.slopes.extend_from_slice(slopes);
+                    },
+                );
             }
         }
     }
@@ -259,7 +289,8 @@ impl LocalProblem {
         self.work.matrix.clear();
         self.work.matrix.extend_from_slice(&self.slopes);
         for (k, (member, a)) in self.members.iter().zip(&self.radius).enumerate() {
-            self.work.matrix[k * n + k] += problem.asperities[member.asperity].penetration_slope(*a) + damping;
+            self.work.matrix[k * n + k] +=
+                problem.asperities[member.asperity].penetration_slope(*a) + damping;
         }
     }
 
@@ -306,20 +337,32 @@ impl LocalProblem {
     }
 
     /// Newton's method from the present radii and mean penetration.
-    pub(crate) fn solve(&mut self, problem: &Problem, hold: Hold, effort: &mut Effort) -> Result<(), NotConverged> {
+    pub(crate) fn solve(
+        &mut self,
+        problem: &Problem,
+        hold: Hold,
+        effort: &mut Effort,
+    ) -> Result<(), NotConverged> {
         self.solve_with(problem, hold, Damping::NORMAL, effort)
     }
 
     /// Newton's method with other limits.
-    pub(crate) fn solve_with(&mut self, problem: &Problem, hold: Hold, damping: Damping, effort: &mut Effort) -> Result<(), NotConverged> {
-        let mut descent = Descent { local: self, problem, hold, effort, step: (Vec::new(), 0.0), start: (Vec::new(), 0.0) };
+    pub(crate) fn solve_with(
+        &mut self,
+        problem: &Problem,
+        hold: Hold,
+        damping: Damping,
+        effort: &mut Effort,
+    ) -> Result<(), NotConverged> {
+        let mut descent =
+            Descent { local: self, problem, hold, effort, step: (Vec::new(), 0.0), start: (Vec::new(), 0.0) };
         let first = descent.evaluate();
         let tolerance_m = descent.local.tolerance_m(problem);
         damped_newton(&mut descent, first, damping, tolerance_m)
     }
 
-    /// `da_i/dΔ` of the members at the equilibrium that was evaluated last, and whether it is stable: the sign of the determinant of the
-    /// Jacobian.
+    /// `da_i/dΔ` of the members at the equilibrium that was evaluated last, and whether it is stable: the
+    /// sign of the determinant of the Jacobian.
     pub(crate) fn rates(&mut self, problem: &Problem) -> (Vec<f64>, bool) {
         if let Some(known) = &self.work.rates {
             return known.clone();
@@ -352,7 +395,12 @@ impl LocalProblem {
     }
 
     /// Penetrations of the watched asperities, with their rates for given rates of the members.
-    pub(crate) fn watch(&self, problem: &Problem, rates: &[f64], effort: &mut Effort) -> Vec<PenetrationTrace> {
+    pub(crate) fn watch(
+        &self,
+        problem: &Problem,
+        rates: &[f64],
+        effort: &mut Effort,
+    ) -> Vec<PenetrationTrace> {
         let places: Vec<usize> = self.watched.iter().map(|place| place.asperity).collect();
         let mut traces = Vec::with_capacity(places.len());
         problem.field.rows(&self.work.spots, &places, self.extent.sums(), effort, |k, field, slopes| {
@@ -364,11 +412,11 @@ impl LocalProblem {
         traces
     }
 
-    /// Load of the members \[N\], and the part of the potential that changes with them \[J\]: `Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`, with ŵ
-    /// by one another.
+    /// Load of the members \[N\], and the part of the potential that changes with them \[J\]:
+    /// `Σ[U(d_i, a_i) − Δγπa_i²] + ½ΣF_iŵ_i`, with ŵ by one another.
     ///
-    /// The displacement by the outside is held, and `Π` is stationary: the change is that of the whole potential to second order in the
-    /// response of the outside.
+    /// The displacement by the outside is held, and `Π` is stationary: the change is that of the whole
+    /// potential to second order in the response of the outside.
     pub(crate) fn totals(&self, problem: &Problem) -> (f64, f64) {
         let (mut whole, mut potential) = (0.0, 0.0);
         for ((member, &a), field) in self.members.iter().zip(&self.radius).zip(&self.field) {
@@ -398,7 +446,8 @@ impl LocalProblem {
         self.mean_penetration = mean_penetration;
     }
 
-    /// Moves over a fold: member `at` by a share of its radius, the others along the tangent, Δ by `gap` \[m\].
+    /// Moves over a fold: member `at` by a share of its radius, the others along the tangent, Δ by `gap`
+    /// \[m\].
     pub(crate) fn step_over_fold(&mut self, problem: &Problem, at: usize, share: f64, gap: f64) {
         let (direction, _) = self.along(problem, at);
         let span = share * self.radius[at];
@@ -426,14 +475,16 @@ impl NonlinearSystem for Descent<'_> {
         let contact = self.local.evaluate(self.problem, self.effort);
         let mut largest_m = contact.residual_m;
         if let Hold::Penetration(watched, wanted) = self.hold {
-            largest_m = largest_m.max((self.local.penetration_of(self.problem, watched, self.effort) - wanted).abs());
+            largest_m =
+                largest_m.max((self.local.penetration_of(self.problem, watched, self.effort) - wanted).abs());
         }
         Worst { contact, largest_m }
     }
 
     fn begin_step(&mut self, _round: usize, _worst: &Worst) {
         self.step = self.local.newton_step(self.problem, self.hold, self.effort);
-        let stride = self.step.0.iter().zip(&self.local.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
+        let stride =
+            self.step.0.iter().zip(&self.local.radius).map(|(s, a)| (s / a).abs()).fold(0.0, f64::max);
         let most = self.problem.numerics.solver.radius_change;
         if stride > most {
             self.step.0.iter_mut().for_each(|s| *s *= most / stride);

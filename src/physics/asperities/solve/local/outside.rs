@@ -22,7 +22,8 @@ impl ReferenceState {
     }
 }
 
-/// Member as a source for the outside: present radius \[m\], state before, and load beyond the expected one \[N\].
+/// Member as a source for the outside: present radius \[m\], state before, and load beyond the expected one
+/// \[N\].
 struct Source {
     asperity: usize,
     now: Option<f64>,
@@ -46,7 +47,8 @@ impl Source {
 
     /// Distance beyond which it acts by its load alone \[m\].
     fn reach(&self, problem: &Problem) -> f64 {
-        problem.numerics.solver.groups.point_load_distance * self.now.unwrap_or(0.0).max(self.before.map_or(0.0, |before| before.radius))
+        problem.numerics.solver.groups.point_load_distance
+            * self.now.unwrap_or(0.0).max(self.before.map_or(0.0, |before| before.radius))
     }
 
     /// Displacement at a distance r beyond the expected one \[m\], without images.
@@ -66,12 +68,16 @@ fn part(drift: f64) -> f64 {
 impl LocalProblem {
     /// Members before a change, as [`Self::displacement_changes`] needs them, without expected changes.
     pub(crate) fn reference_states(&self) -> Vec<ReferenceState> {
-        let state = |(member, a): (&OutsideField, &f64)| ReferenceState { asperity: member.asperity, radius: *a, more: 0.0 };
+        let state = |(member, a): (&OutsideField, &f64)| ReferenceState {
+            asperity: member.asperity,
+            radius: *a,
+            more: 0.0,
+        };
         self.members.iter().zip(&self.radius).map(state).collect()
     }
 
-    /// Changes of the displacements at asperities (ascending) beyond the expected ones \[m\]: of the loads as points, and next to a contact of its
-    /// field.
+    /// Changes of the displacements at asperities (ascending) beyond the expected ones \[m\]: of the loads as
+    /// points, and next to a contact of its field.
     pub(crate) fn displacement_changes(
         &self,
         problem: &Problem,
@@ -81,14 +87,18 @@ impl LocalProblem {
     ) -> Vec<f64> {
         let mut sources: Vec<Source> = before.iter().map(|state| Source::before(problem, state)).collect();
         for (member, &a) in self.members.iter().zip(&self.radius) {
-            let at = before.binary_search_by_key(&member.asperity, |state| state.asperity).unwrap_or_else(|_| {
-                sources.push(Source::new(member.asperity));
-                sources.len() - 1
-            });
+            let at =
+                before.binary_search_by_key(&member.asperity, |state| state.asperity).unwrap_or_else(|_| {
+                    sources.push(Source::new(member.asperity));
+                    sources.len() - 1
+                });
             sources[at].set_now(problem, a);
         }
-        let as_point =
-            |source: &Source| PointLoad { place: *problem.place(source.asperity), load_n: source.load, reach_m: source.reach(problem) };
+        let as_point = |source: &Source| PointLoad {
+            place: *problem.place(source.asperity),
+            load_n: source.load,
+            reach_m: source.reach(problem),
+        };
         let loads: Vec<PointLoad> = sources.iter().map(as_point).collect();
         let mut changes = problem.field.of_loads(&loads, centre, asperities);
         for source in &sources {
@@ -101,12 +111,18 @@ impl LocalProblem {
         changes
     }
 
-    /// `Σ F_i ∂ŵ_i/∂Δ` of the members by the outside \[N\]: by reciprocity, the effect of these loads on the load of the outside.
+    /// `Σ F_i ∂ŵ_i/∂Δ` of the members by the outside \[N\]: by reciprocity, the effect of these loads on the
+    /// load of the outside.
     pub(crate) fn reciprocal_load_rate(&self, problem: &Problem) -> f64 {
-        self.members.iter().zip(&self.radius).map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a)).sum()
+        self.members
+            .iter()
+            .zip(&self.radius)
+            .map(|(m, a)| part(m.drift) * problem.asperities[m.asperity].load(*a))
+            .sum()
     }
 
-    /// Load of the members beyond the expected one, and the same for its effect on the load of the outside \[N\].
+    /// Load of the members beyond the expected one, and the same for its effect on the load of the outside
+    /// \[N\].
     pub(crate) fn unexpected_load(&self, problem: &Problem, before: &[ReferenceState]) -> (f64, f64) {
         let (mut load, mut pull) = (0.0, 0.0);
         for ((member, &a), state) in self.members.iter().zip(&self.radius).zip(before) {

@@ -9,7 +9,8 @@ use crate::asperities::solve::residual::NotConverged;
 use crate::cycle::Effort;
 
 impl LocalProblem {
-    /// Relaxes at the present mean penetration ([`crate::asperities::solve::relaxation`]); the transitions on the way are returned.
+    /// Relaxes at the present mean penetration ([`crate::asperities::solve::relaxation`]); the transitions on
+    /// the way are returned.
     pub(crate) fn relax(
         &mut self,
         problem: &Problem,
@@ -48,8 +49,9 @@ impl Relaxing for Part<'_> {
 
     fn finish(&mut self) -> bool {
         let rest = self.patch.radius.clone();
-        let found = self.patch.solve_with(self.problem, Hold::MeanPenetration, Damping::PATIENT, self.effort).is_ok()
-            && self.patch.rates(self.problem).1;
+        let found =
+            self.patch.solve_with(self.problem, Hold::MeanPenetration, Damping::PATIENT, self.effort).is_ok()
+                && self.patch.rates(self.problem).1;
         if !found {
             self.patch.radius = rest;
         }
