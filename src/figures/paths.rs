@@ -2,7 +2,7 @@
 
 use super::FigureError;
 use super::axis::Axis;
-use super::curve::{Curve, Note, Stroke, XyPlot};
+use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 use super::style::{MOST_NOTES, NEUTRAL, curve, entry};
 use super::sweep::{Member, Sweep};
 use crate::store::Frame;
@@ -20,37 +20,33 @@ pub(super) fn paths(
     let (max_loads, loads, values) =
         (table.f64_or_null("max_load")?, table.f64("load")?, table.f64(&format!("{column}_mean"))?);
     let spreads = table.f64_or_null(&format!("{column}_sd"))?;
-    let picked =
-        |member: &Member, branch: &str, max_load: Option<f64>, colour: String, stroke: Stroke| -> Curve {
-            let of_it = |row: &usize| {
-                ids.get(*row) == Some(&member.case_id.as_str())
-                    && branches.get(*row) == Some(&branch)
-                    && max_loads.get(*row) == Some(&max_load)
-            };
-            let rows: Vec<usize> = (0..table.row_count()).filter(of_it).collect();
-            let points = rows
-                .iter()
-                .filter_map(|row| loads.get(*row).copied().zip(values.get(*row).copied()))
-                .collect();
-            let errors: Vec<Option<f64>> =
-                rows.iter().map(|row| spreads.get(*row).copied().flatten()).collect();
-            let band = errors.iter().any(Option::is_some);
-            Curve { errors, band, positive, ..curve((branch, &member.label), points, colour, stroke) }
+    let picked = |member: &Member, branch: &str, max_load: Option<f64>, stroke: Stroke| -> Curve {
+        let of_it = |row: &usize| {
+            ids.get(*row) == Some(&member.case_id.as_str())
+                && branches.get(*row) == Some(&branch)
+                && max_loads.get(*row) == Some(&max_load)
         };
+        let rows: Vec<usize> = (0..table.row_count()).filter(of_it).collect();
+        let point = |row: &usize| loads.get(*row).copied().zip(values.get(*row).copied());
+        let points = rows.iter().filter_map(point).collect();
+        let errors: Vec<Option<f64>> = rows.iter().map(|row| spreads.get(*row).copied().flatten()).collect();
+        let band = errors.iter().any(Option::is_some);
+        let of_path = curve((branch, &member.label), points, member.colour.clone(), stroke);
+        Curve { errors, band, positive, ..of_path }
+    };
     let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
     let beside = !sweep.differing.is_empty();
     let every = sweep.members.len().div_ceil(MOST_NOTES);
     // One loading path serves all load reversals of a case: it has the colour of the largest load.
     for member in sweep.members.iter().rev() {
         if !drawn.contains(&member.case_id) {
-            curves.push(picked(member, "loading", None, member.colour.clone(), Stroke::Dashed));
+            curves.push(picked(member, "loading", None, Stroke::Dashed));
             drawn.push(member.case_id.clone());
         }
     }
     curves.reverse();
     for (at, member) in sweep.members.iter().enumerate() {
-        let unloading =
-            picked(member, "unloading", Some(member.max_load), member.colour.clone(), Stroke::Solid);
+        let unloading = picked(member, "unloading", Some(member.max_load), Stroke::Solid);
         if let Some(end) = unloading.points.first()
             && sweep.members.len() > 1
             && at % every == 0
@@ -59,14 +55,7 @@ pub(super) fn paths(
         }
         curves.push(unloading);
     }
-    let mut key = vec![
-        entry("loading", NEUTRAL, Some(Stroke::Dashed), false),
-        entry("unloading", NEUTRAL, Some(Stroke::Solid), false),
-    ];
-    if curves.iter().any(|curve| curve.band) {
-        let cut = if curves.iter().any(Curve::is_cut) { ", end at 0" } else { "" };
-        key.push(entry(&format!("bands: ± one standard deviation{cut}"), NEUTRAL, None, false));
-    }
+    let mut key = key_of(&curves);
     if !beside && !notes.is_empty() {
         key.push(entry("numbers: F_{max}/(E^{*}A_{0})", NEUTRAL, None, false));
     }
@@ -88,4 +77,17 @@ pub(super) fn paths(
         notes,
         margin: 0.0,
     })
+}
+
+/// Entries of the strokes and of the bands.
+fn key_of(curves: &[Curve]) -> Vec<KeyEntry> {
+    let mut key = vec![
+        entry("loading", NEUTRAL, Some(Stroke::Dashed), false),
+        entry("unloading", NEUTRAL, Some(Stroke::Solid), false),
+    ];
+    if curves.iter().any(|curve| curve.band) {
+        let cut = if curves.iter().any(Curve::is_cut) { ", end at 0" } else { "" };
+        key.push(entry(&format!("bands: ± one standard deviation{cut}"), NEUTRAL, None, false));
+    }
+    key
 }

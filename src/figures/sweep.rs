@@ -44,6 +44,14 @@ pub(super) struct Sweep {
     pub(super) axis: Axis,
 }
 
+/// Error of a sweep that no case belongs to.
+fn unknown(name: &str, sweeps: &[&str]) -> FigureError {
+    let mut known: Vec<&str> = sweeps.iter().flat_map(|joined| joined.split('+')).collect();
+    known.sort_unstable();
+    known.dedup();
+    FigureError::UnknownSweep { sweep: name.to_owned(), known: known.join(", ") }
+}
+
 impl Sweep {
     /// Finds the members of a sweep.
     pub(super) fn find(cases: &Frame, name: &str) -> Result<Self, FigureError> {
@@ -52,10 +60,7 @@ impl Sweep {
         let rows: Vec<usize> =
             sweeps.iter().enumerate().filter(|(_, joined)| belongs(joined)).map(|(row, _)| row).collect();
         if rows.is_empty() {
-            let mut known: Vec<&str> = sweeps.iter().flat_map(|joined| joined.split('+')).collect();
-            known.sort_unstable();
-            known.dedup();
-            return Err(FigureError::UnknownSweep { sweep: name.to_owned(), known: known.join(", ") });
+            return Err(unknown(name, &sweeps));
         }
         let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
         let area = cases.f64_or_null("area_at_max_load_mean")?;
@@ -94,17 +99,10 @@ impl Sweep {
                 }
             }
             let case_id = ids.get(*row).copied().unwrap_or_default().to_owned();
-            let series = series.join(", ");
+            let (label, series, colour) = (parts.join(", "), series.join(", "), String::new());
             // Without a place, a member has curves but no point; NaN is left out of every axis.
-            members.push(Member {
-                row: *row,
-                case_id,
-                max_load: load,
-                x: x.unwrap_or(f64::NAN),
-                label: parts.join(", "),
-                colour: String::new(),
-                series,
-            });
+            let x = x.unwrap_or(f64::NAN);
+            members.push(Member { row: *row, case_id, max_load: load, x, label, colour, series });
         }
         let order = |member: &Member| {
             if differing.is_empty() { member.max_load } else { member.x }

@@ -27,26 +27,13 @@ const BASE: &str = "base";
 /// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no
 /// name.
 pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
-    let Draft {
-        name,
-        seed,
-        realizations,
-        figures,
-        realizations_at,
-        base,
-        origins,
-        sweeps,
-        files,
-        auto_methods,
-        auto_at,
-    } = draft;
+    let Draft { mut base, origins, sweeps, .. } = draft;
     let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
     if too_many(&read, faults) {
         return None;
     }
-    let mut base = base;
     let mut cases = Cases::default();
-    let (mut choices, mut auto_cases) = (Choices::of(auto_methods), Vec::new());
+    let (mut choices, mut auto_cases) = (Choices::of(draft.auto_methods), Vec::new());
     let mut add =
         |mut values: Values, origins: &[Origin], swept: &[usize], sweep: &str, faults: &mut Faults<'_>| {
             complete(&mut values, origins);
@@ -71,27 +58,26 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     }
     complete(&mut base, &origins);
     // Of a sweep with a fault the cases are unknown.
-    let files = if faults.count() == 0 { named(files, &cases.list, faults) } else { BTreeMap::new() };
+    let files = if faults.count() == 0 { named(draft.files, &cases.list, faults) } else { BTreeMap::new() };
     let first = read.first().map(|sweep| &sweep.span);
-    bound_tasks(&cases.list, realizations, realizations_at.as_ref().or(first), faults);
-    choices.check(auto_at.as_ref(), faults);
+    bound_tasks(&cases.list, draft.realizations, draft.realizations_at.as_ref().or(first), faults);
+    choices.check(draft.auto_at.as_ref(), faults);
     let mut sweeps: Vec<Sweep> = read.into_iter().map(sweep).collect();
     let auto_methods = choices.settle(&mut base, &mut sweeps);
     // Of cases that are all chosen the places are of no use.
     auto_cases.retain(|_| auto_methods.contains(&Method::Auto));
-    let (cases, absolute_files) = (cases.list, BTreeSet::new());
     Some(Spec {
-        name: name?,
-        seed,
-        realizations,
-        figures,
-        cases,
+        name: draft.name?,
+        seed: draft.seed,
+        realizations: draft.realizations,
+        figures: draft.figures,
+        cases: cases.list,
         base,
         sweeps,
         auto_methods,
         auto_cases,
         files,
-        absolute_files,
+        absolute_files: BTreeSet::new(),
     })
 }
 

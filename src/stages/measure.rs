@@ -94,11 +94,17 @@ pub fn measure(params: &MeasuredSurface, digest: &str, key: &str) -> Result<Impo
         texture: Texture::of(prepared.heights_m.view(), Edges::of(params.periodic))?,
         quality: Some(quality),
     };
+    let header = header(&prepared, params.periodic, key, measured);
+    Ok(Imported { prepared, header, height_factor_m, notes })
+}
+
+/// Header of a measured surface in a run.
+fn header(prepared: &Prepared, periodic: bool, key: &str, measured: Measured) -> SurfaceHeader {
     let moments = &prepared.moments;
-    let header = SurfaceHeader {
+    SurfaceHeader {
         length_m: prepared.length_m,
         realization: 0,
-        periodic: params.periodic,
+        periodic,
         key: key.to_owned(),
         rms_height_m: moments.rms_height_m(),
         rms_slope: moments.rms_slope(),
@@ -106,8 +112,7 @@ pub fn measure(params: &MeasuredSurface, digest: &str, key: &str) -> Result<Impo
         nayak_parameter: moments.nayak_parameter(),
         generated: None,
         measured: Some(measured),
-    };
-    Ok(Imported { prepared, header, height_factor_m, notes })
+    }
 }
 
 /// A surface of this program, which has been treated already.

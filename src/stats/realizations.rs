@@ -132,24 +132,16 @@ fn reduce(
     let lacking = |what: &str| fault(&input.steps, format!("lack {what} at the turning point {max_load}"));
     let at = |values: &[f64]| values.get(turning).copied().ok_or_else(|| lacking("a number"));
     let count_at = |values: &[i64]| values.get(turning).copied().unwrap_or_default();
-    let Some(work_back) = unloading.work_j.last() else {
-        return Err(lacking("an unloading branch"));
-    };
+    let work_back = unloading.work_j.last().ok_or_else(|| lacking("an unloading branch"))?;
     let at_reversal = at(&loading.work_j)?;
     let loss_j = at_reversal + work_back;
-    let works = loading
-        .work_j
-        .iter()
-        .take(turning + 1)
-        .copied()
-        .chain(unloading.work_j.iter().map(|work| at_reversal + work));
+    let on_unloading = unloading.work_j.iter().map(|work| at_reversal + work);
+    let works = loading.work_j.iter().take(turning + 1).copied().chain(on_unloading);
     let work_j = works.map(f64::abs).fold(0.0, f64::max);
     let loss = loss_j / input.energy_scale_j;
     let area = at(&loading.area)?;
     let discs = at(&loading.area_m2)?;
     let union = loading.area_union_m2.get(turning).copied().flatten();
-    let dk = |slope: Option<f64>| slope.map(|slope| slope * area / input.energy_scale_j);
-    let loss_dk = dk(input.loss_dk_per_area_j);
     let on_loading: f64 = loading.dissipated_j.iter().take(turning + 1).sum();
     // Without adhesion the events of loading are undone on unloading, and nothing but rounding remains.
     let dissipated_j =
@@ -163,6 +155,11 @@ fn reduce(
     let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
     let load_unit = at(&loading.load)? / at(&loading.load_n)?;
+    // The sum and the union of the discs are both in m²; A0 need not be known to scale the one like the other.
+    let union = union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 });
+    let per_area = |loss_j: f64| loss_j * area / input.energy_scale_j;
+    let loss_dk = input.loss_dk_per_area_j.map(per_area);
+    let share = |part: i64, of: i64| (of > 0).then(|| part as f64 / of as f64);
     let columns: [(&str, Value); 29] = [
         ("realization", input.realization.into()),
         ("cycle_id", input.cycle_id.as_str().into()),
@@ -173,22 +170,14 @@ fn reduce(
         ("pull_off_load", pull_off.map(|pull_off| pull_off * load_unit).into()),
         ("pull_off_load_n", pull_off.into()),
         ("area_at_max_load", area.into()),
-        // The sum and the union of the discs are both in m²; A0 need not be known to scale the one like the
-        // other.
-        (
-            "area_union_at_max_load",
-            union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 }).into(),
-        ),
+        ("area_union_at_max_load", union.into()),
         ("penetration_at_max_load", at(&loading.penetration)?.into()),
         ("loss", is_resolved.then_some(loss).into()),
         ("loss_j", is_resolved.then_some(loss_j).into()),
         ("loss_dk", loss_dk.into()),
-        ("loss_dk_realised", dk(input.loss_dk_realised_per_area_j).into()),
-        (
-            "loss_pinning",
-            input.loss_pinning_per_area_j.map(|slope| slope * area / input.energy_scale_j).into(),
-        ),
-        ("loss_dalvi", (input.loss_dalvi_per_area_j * area / input.energy_scale_j).into()),
+        ("loss_dk_realised", input.loss_dk_realised_per_area_j.map(per_area).into()),
+        ("loss_pinning", input.loss_pinning_per_area_j.map(per_area).into()),
+        ("loss_dalvi", per_area(input.loss_dalvi_per_area_j).into()),
         ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0 && is_resolved).map(|dk| loss / dk).into()),
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),
@@ -200,11 +189,8 @@ fn reduce(
         ("step_count", (turning + 1 + unloading.step.len()).into()),
         ("unconverged_count", converged.filter(|converged| !**converged).count().into()),
         ("held_count", held.into()),
-        ("touching_share", (contacts > 0).then(|| touching as f64 / contacts as f64).into()),
-        (
-            "covered_share",
-            (contacts + covered > 0).then(|| covered as f64 / (contacts + covered) as f64).into(),
-        ),
+        ("touching_share", share(touching, contacts).into()),
+        ("covered_share", share(covered, contacts + covered).into()),
     ];
     Ok(columns.into_iter().map(|(name, value)| (name.to_owned(), value)).collect())
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 use hdf5_metno::types::{FixedAscii, VarLenArray, VarLenUnicode};
 use hdf5_metno::{Dataset, Datatype, File, FileBuilder, ObjectReference, ObjectReference1};
 
+use super::attributes::write_text;
 use super::error::Cause;
-use super::surface_header::write_text;
 
 /// Datasets of the coordinates: along the rows of the height field, and along its columns.
 const AXES: [&str; 2] = ["x_m", "y_m"];

@@ -12,9 +12,10 @@ use super::axes;
 use super::commit::{Written, commit};
 use super::dataset::{Outside, dataset, only_field};
 use super::error::{Cause, StoreError, fenced};
+pub use super::quality::Quality;
 use super::scan::room;
-use super::surface_header;
-pub use super::surface_header::{Generated, Measured, Quality, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
+pub use super::surface_header::{Generated, Measured, SURFACE_VERSION, SpectrumFit, SurfaceHeader};
+use super::{attributes, surface_header};
 
 /// Does something while no other thread is in the HDF5 library, which ends with the program and must not be
 /// in use then.
@@ -225,7 +226,7 @@ fn write_all(path: &Path, header: &SurfaceHeader, heights: ArrayView2<'_, f64>) 
     surface_header::write_sum(&file, &sum_of(heights))?;
     // Contiguous: some readers do not support the index of chunks of this format.
     let data = file.new_dataset::<f64>().shape((rows, rows)).create(HEIGHT)?;
-    surface_header::write_text(&data, "unit", "m")?;
+    attributes::write_text(&data, "unit", "m")?;
     axes::write(&file, &kind, &data, header.length_m)?;
     for first in (0..rows).step_by(BAND) {
         let band = first..rows.min(first + BAND);

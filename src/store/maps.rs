@@ -1,9 +1,9 @@
 //! Maps of gap and pressure in HDF5.
 
+use super::attributes::{write_number, write_text};
 use super::commit::{Written, commit};
 use super::error::{Cause, StoreError};
 use super::hdf5::{library, open, options_of};
-use super::surface_header::{write_number, write_text};
 use hdf5_metno::file::LibraryVersion;
 use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{File, Group};

@@ -4,6 +4,7 @@
 //! stored, and equal arguments give equal bytes. What it reads it does not trust: whatever the bytes of a
 //! file are, the answer is its content or a sentence.
 
+mod attributes;
 mod axes;
 mod builder;
 pub mod commit;
@@ -17,6 +18,7 @@ mod heaps;
 pub mod heartbeat;
 mod maps;
 pub mod parquet;
+mod quality;
 mod receipt;
 pub mod scan;
 mod surface_header;

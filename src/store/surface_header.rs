@@ -1,29 +1,26 @@
 //! Attributes of the root of a surface file.
 
-use hdf5_metno::types::{FixedUnicode, TypeDescriptor, VarLenUnicode};
-use hdf5_metno::{File, Group, H5Type, Location};
+use hdf5_metno::{File, Group};
 use ndarray::ArrayView2;
 use std::f64::consts::TAU;
 
-use crate::model::{Amplitudes, Choice, Detrend, FastAxis, Filter, Normalization, SpectrumEnd};
+use crate::model::{Amplitudes, Choice, Detrend, Filter, Normalization, SpectrumEnd};
 use crate::physics::surface::SquareMap;
 use crate::physics::surface::edges::Edges;
 use crate::physics::surface::spectrum::Moments;
 use crate::physics::surface::texture::Texture;
 
+use super::attributes::{
+    COPIES, choice, finite, number, truth, word, write_copy, write_finite, write_number, write_word,
+};
 use super::error::Cause;
+use super::quality::{Quality, read_quality, write_quality};
 
 /// Version of the layout of a surface file, raised whenever an attribute is renamed, removed, or changes its
 /// meaning.
 pub const SURFACE_VERSION: u32 = 1;
-/// Group with a copy of every text attribute of the root, as strings of fixed length, and the checksum of the
-/// heights. Files of earlier versions have these strings in the root.
-const COPIES: &str = "header";
 /// Attribute of that group: BLAKE3 of the heights.
 const SUM: &str = "height_blake3";
-/// Bytes that a word may have: a key is the longest.
-const LONGEST_WORD: usize = 256;
-
 /// Attributes of a surface file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceHeader {
@@ -49,7 +46,37 @@ pub struct SurfaceHeader {
     pub measured: Option<Measured>,
 }
 
+/// Exponent of the spectral density above which short wavelengths are noise. Offsets of scan lines alone have
+/// -1, self-affine surfaces less than -2.
+const NOISE_EXPONENT: f64 = -1.0;
+
 impl SurfaceHeader {
+    /// Columns that state the artefacts of a measured surface, as fractions of its points and rms height;
+    /// empty if they are unknown.
+    #[must_use]
+    pub fn artefact_columns(&self) -> Vec<(&'static str, Option<f64>)> {
+        let Some((measured, quality)) =
+            self.measured.as_ref().and_then(|of| of.quality.as_ref().map(|quality| (of, quality)))
+        else {
+            return Vec::new();
+        };
+        let points: u64 = measured.source_point_counts.iter().product();
+        let noise = quality.noise_exponent.filter(|exponent| *exponent > NOISE_EXPONENT);
+        vec![
+            (
+                "outlier_share",
+                Some(if quality.outlier_effect > 1.0 {
+                    quality.outlier_left_count as f64 / points as f64
+                } else {
+                    0.0
+                }),
+            ),
+            ("line_jump_share", Some(quality.line_jump_m / self.rms_height_m)),
+            ("noise_share", Some(noise.map_or(0.0, |_| measured.noise_m / self.rms_height_m))),
+            ("curvature_ratio", quality.curvature_ratio),
+        ]
+    }
+
     /// The surface with these heights \[m\].
     #[must_use]
     pub fn square<'a>(&self, heights_m: ArrayView2<'a, f64>) -> SquareMap<'a> {
@@ -325,185 +352,4 @@ pub(super) fn read_sum(file: &File) -> Result<Option<String>, Cause> {
     }
     let words = file.group(COPIES)?;
     if words.attr_names()?.iter().any(|name| name == SUM) { word(&words, SUM).map(Some) } else { Ok(None) }
-}
-
-pub(super) fn write_number<T: H5Type>(place: &Location, name: &str, value: T) -> Result<(), Cause> {
-    Ok(place.new_attr::<T>().create(name)?.write_scalar(&value)?)
-}
-
-pub(super) fn write_finite(place: &Location, name: &str, value: f64) -> Result<(), Cause> {
-    if value.is_finite() {
-        write_number(place, name, value)
-    } else {
-        Err(format!("{name} is {value}, must be finite").into())
-    }
-}
-
-/// Writes a text as an attribute of variable length, which h5py reads as `str`. It must not contain the
-/// character 0.
-pub(super) fn write_text(place: &Location, name: &str, value: &str) -> Result<(), Cause> {
-    let text: VarLenUnicode = value.parse()?;
-    Ok(place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&text)?)
-}
-
-/// Writes a word as an attribute of the root, and a copy of it as a string of fixed length.
-///
-/// HDF5 keeps strings of variable length in a heap without a checksum, and a single changed byte in the heap
-/// can make the library loop for ever. This program therefore reads only the copies.
-pub(super) fn write_word(file: &File, name: &str, value: &str) -> Result<(), Cause> {
-    if value.len() > LONGEST_WORD || value.contains('\0') {
-        return Err(format!(
-            "its {name} {value:?} cannot be stored: it may have {LONGEST_WORD} bytes, none of them 0"
-        )
-        .into());
-    }
-    write_copy(file, name, value)?;
-    write_text(file, name, value)
-}
-
-/// Writes a word as a string of fixed length.
-fn write_copy(file: &File, name: &str, value: &str) -> Result<(), Cause> {
-    let word: FixedUnicode<LONGEST_WORD> = value.parse()?;
-    // HDF5 has no string of length 0; an empty word is one zero byte.
-    let stored = TypeDescriptor::FixedUnicode(value.len().max(1));
-    Ok(file.group(COPIES)?.new_attr_builder().empty_as(&stored).create(name)?.write_scalar(&word)?)
-}
-
-pub(super) fn number<T: H5Type>(place: &Location, name: &str) -> Result<T, Cause> {
-    let read = || place.attr(name)?.read_scalar::<T>();
-    read().map_err(|error| bad_attribute(name, &error))
-}
-
-fn bad_attribute(name: &str, why: &dyn std::fmt::Display) -> Cause {
-    format!("its attribute {name:?} cannot be read: {why}").into()
-}
-
-pub(super) fn finite(place: &Location, name: &str) -> Result<f64, Cause> {
-    let value: f64 = number(place, name)?;
-    if value.is_finite() { Ok(value) } else { Err(bad_attribute(name, &format!("it is {value}"))) }
-}
-
-/// A truth value, from a number or, in files of earlier versions, from a boolean of HDF5.
-fn truth(place: &Location, name: &str) -> Result<bool, Cause> {
-    match number::<i8>(place, name)? {
-        0 => Ok(false),
-        1 => Ok(true),
-        other => Err(bad_attribute(name, &format!("it is {other}, neither true nor false"))),
-    }
-}
-
-fn word(place: &Location, name: &str) -> Result<String, Cause> {
-    let value: FixedUnicode<LONGEST_WORD> = number(place, name)?;
-    // The library does not look whether the bytes are text.
-    String::from_utf8(value.as_bytes().to_vec()).map_err(|error| bad_attribute(name, &error))
-}
-
-pub(super) fn choice<T: Choice>(place: &Location, name: &str) -> Result<T, Cause> {
-    let value = word(place, name)?;
-    T::from_word(&value).ok_or_else(|| {
-        let allowed: Vec<_> = T::WORDS.iter().map(|(word, _)| *word).collect();
-        bad_attribute(name, &format!("unknown value {value:?}\nhelp: expected one of {}", allowed.join(", ")))
-    })
-}
-
-/// Corrected and remaining artefacts of a measured surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quality {
-    /// Outliers that were replaced.
-    pub outlier_count: u64,
-    /// Outliers that remain.
-    pub outlier_left_count: u64,
-    /// Largest effect of the remaining outliers on the filtered surface, over its limit.
-    pub outlier_effect: f64,
-    /// Direction of the scan lines whose offsets were removed, or remain.
-    pub line_axis: FastAxis,
-    /// Rms offset of scan lines that was removed \[m\]; nothing if the lines were not aligned.
-    pub line_offset_m: Option<f64>,
-    /// Rms offset of scan lines that remains \[m\]; 0 if there is none.
-    pub line_jump_m: f64,
-    /// Radius of the tip \[m\].
-    pub tip_radius_m: Option<f64>,
-    /// Reliability cut-off of the tip \[m\]; nothing if all wavelengths are reliable.
-    pub tip_cutoff_m: Option<f64>,
-    /// Exponent of the spectral density of the removed short wavelengths.
-    pub noise_exponent: Option<f64>,
-    /// Curvature of the sharpest summits over that of the sharpest valleys, if the surface is rounded nearly
-    /// everywhere and no tip radius was given.
-    pub curvature_ratio: Option<f64>,
-}
-
-/// Exponent of the spectral density above which short wavelengths are noise. Offsets of scan lines alone have
-/// -1, self-affine surfaces less than -2.
-const NOISE_EXPONENT: f64 = -1.0;
-
-impl SurfaceHeader {
-    /// Columns that state the artefacts of a measured surface, as fractions of its points and rms height;
-    /// empty if they are unknown.
-    #[must_use]
-    pub fn artefact_columns(&self) -> Vec<(&'static str, Option<f64>)> {
-        let Some((measured, quality)) =
-            self.measured.as_ref().and_then(|of| of.quality.as_ref().map(|quality| (of, quality)))
-        else {
-            return Vec::new();
-        };
-        let points: u64 = measured.source_point_counts.iter().product();
-        let noise = quality.noise_exponent.filter(|exponent| *exponent > NOISE_EXPONENT);
-        vec![
-            (
-                "outlier_share",
-                Some(if quality.outlier_effect > 1.0 {
-                    quality.outlier_left_count as f64 / points as f64
-                } else {
-                    0.0
-                }),
-            ),
-            ("line_jump_share", Some(quality.line_jump_m / self.rms_height_m)),
-            ("noise_share", Some(noise.map_or(0.0, |_| measured.noise_m / self.rms_height_m))),
-            ("curvature_ratio", quality.curvature_ratio),
-        ]
-    }
-}
-
-/// Numbers that a file lacks where they do not apply.
-fn optional(of: &Quality) -> [(&'static str, Option<f64>); 5] {
-    [
-        ("line_offset_m", of.line_offset_m),
-        ("tip_radius_m", of.tip_radius_m),
-        ("tip_cutoff_m", of.tip_cutoff_m),
-        ("noise_exponent", of.noise_exponent),
-        ("curvature_ratio", of.curvature_ratio),
-    ]
-}
-
-pub(super) fn write_quality(file: &File, of: &Quality) -> Result<(), Cause> {
-    write_number(file, "outlier_count", of.outlier_count)?;
-    write_number(file, "outlier_left_count", of.outlier_left_count)?;
-    write_finite(file, "outlier_effect", of.outlier_effect)?;
-    write_word(file, "line_axis", of.line_axis.word())?;
-    write_finite(file, "line_jump_m", of.line_jump_m)?;
-    optional(of)
-        .into_iter()
-        .filter_map(|(name, value)| Some((name, value?)))
-        .try_for_each(|(name, value)| write_finite(file, name, value))
-}
-
-/// The artefacts in a file; nothing in files of versions that did not look for any.
-pub(super) fn read_quality(file: &File, words: &Group, names: &[String]) -> Result<Option<Quality>, Cause> {
-    let has = |name: &str| names.iter().any(|known| known == name);
-    if !has("outlier_left_count") {
-        return Ok(None);
-    }
-    let optional = |name: &str| has(name).then(|| finite(file, name)).transpose();
-    Ok(Some(Quality {
-        outlier_count: number(file, "outlier_count")?,
-        outlier_left_count: number(file, "outlier_left_count")?,
-        outlier_effect: finite(file, "outlier_effect")?,
-        line_axis: choice(words, "line_axis")?,
-        line_offset_m: optional("line_offset_m")?,
-        line_jump_m: finite(file, "line_jump_m")?,
-        tip_radius_m: optional("tip_radius_m")?,
-        tip_cutoff_m: optional("tip_cutoff_m")?,
-        noise_exponent: optional("noise_exponent")?,
-        curvature_ratio: optional("curvature_ratio")?,
-    }))
 }

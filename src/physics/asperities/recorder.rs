@@ -157,6 +157,7 @@ impl Recorder {
             .map(|way| way.least)
             .collect();
         let effort = path.effort();
+        let (drift_m, of_step) = (Some(path.log().drift_m), effort - self.effort_before);
         cycle.steps.push(Step {
             branch: self.branch,
             max_load: self.max_load,
@@ -168,45 +169,12 @@ impl Recorder {
             counts: counts(at, &recent),
             dissipated_j: recent.iter().map(|event| event.energy_lost_j).sum(),
             work_j: at.log().work_j,
-            numerics: StepNumerics {
-                is_converged: state.residual_m
-                    <= problem.numerics.solver.converged_residual * problem.rms_height_m,
-                residual_m: Some(state.residual_m),
-                drift_m: Some(path.log().drift_m),
-                stability: Some(state.stability),
-                effort: effort - self.effort_before,
-                ..StepNumerics::default()
-            },
+            numerics: StepNumerics { drift_m, effort: of_step, ..numerics(problem, state) },
         });
         self.events_before += recent.len();
         self.ways_before += ways.len();
         self.effort_before = effort;
-        cycle.events.extend(recent.into_iter().map(|event| {
-            let PathEvent {
-                kind,
-                asperity,
-                status,
-                cause,
-                mean_penetration_m,
-                avalanche,
-                before,
-                after,
-                energy_lost_j,
-            } = event;
-            let site = Site::Asperity(problem.number(asperity));
-            Event {
-                step: number,
-                kind,
-                site,
-                status: Some(status),
-                cause,
-                mean_penetration_m,
-                avalanche,
-                before,
-                after,
-                energy_lost_j,
-            }
-        }));
+        cycle.events.extend(recent.iter().map(|event| recorded(event, number, problem)));
         let keep = match settings.contacts {
             KeptContacts::All => true,
             KeptContacts::Turning => {
@@ -232,6 +200,33 @@ impl Recorder {
         }));
         self.merged_before = state.merged.len();
         path.begin_record();
+    }
+}
+
+/// Accuracy of a state.
+fn numerics(problem: &Problem, state: &State) -> StepNumerics {
+    let tolerance_m = problem.numerics.solver.converged_residual * problem.rms_height_m;
+    StepNumerics {
+        is_converged: state.residual_m <= tolerance_m,
+        residual_m: Some(state.residual_m),
+        stability: Some(state.stability),
+        ..StepNumerics::default()
+    }
+}
+
+/// An event of a path as an event of a step.
+fn recorded(event: &PathEvent, step: usize, problem: &Problem) -> Event {
+    Event {
+        step,
+        kind: event.kind,
+        site: Site::Asperity(problem.number(event.asperity)),
+        status: Some(event.status),
+        cause: event.cause,
+        mean_penetration_m: event.mean_penetration_m,
+        avalanche: event.avalanche,
+        before: event.before,
+        after: event.after,
+        energy_lost_j: event.energy_lost_j,
     }
 }
 

@@ -16,15 +16,11 @@ use std::iter::repeat_n;
 pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, StageError> {
     let (campaign, params) = (task.campaign, task.params());
     let surface = read_surface_estimates(&campaign.estimates_path(&campaign.surfaces[task.unit.surface]))?;
-    let all = CycleEstimates::of(
-        &surface,
-        target(params).as_ref(),
-        &computed.summits,
-        &params.material,
-        &computed.adhesionless,
-    )?;
-    let (loads, nominal_m2, rms_height_m) =
-        (&params.cycle.max_load, surface.nominal_area_m2(), computed.rms_height_m);
+    let (target, material) = (target(params), &params.material);
+    let all =
+        CycleEstimates::of(&surface, target.as_ref(), &computed.summits, material, &computed.adhesionless)?;
+    let (loads, nominal_m2) = (&params.cycle.max_load, surface.nominal_area_m2());
+    let rms_height_m = computed.rms_height_m;
     let energy_scale_j = params.material.contact_modulus_pa * nominal_m2 * rms_height_m;
     let same = |value: Option<f64>| repeat_n(value.filter(finite), loads.len());
     let at_load: Vec<LoadEstimates> = loads.iter().map(|load| all.at_load(*load)).collect();
@@ -37,6 +33,7 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
     let by_asperities = |turning: &Option<(usize, f64)>| {
         turning.as_ref().filter(|_| computed.per_wavelength.is_none()).map(touched)
     };
+    let per_wavelength = computed.per_wavelength.map(|points| surface.per_shortest_wavelength(points));
     let tabor = |value: fn(&Tabor) -> f64| same(all.tabor.as_ref().map(value));
     let mut frame = Identity::of(campaign, task.unit)
         .begin(&ESTIMATES, loads.len())
@@ -44,12 +41,7 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
         .f64("energy_scale_j", same(Some(energy_scale_j)))
         .f64("loss_dalvi_nominal_j", same(Some(all.dalvi_nominal_j)))
         .f64("loss_pinning_nominal_j", same(all.pinning_nominal_j))
-        .f64(
-            "resolution_j",
-            reversals
-                .iter()
-                .map(|turning| turning.and_then(|turning| resolution_j(&computed.cycle, turning))),
-        )
+        .f64("resolution_j", reversals.iter().map(|turning| resolution_j(&computed.cycle, *turning)))
         .f64("conformity", same(all.ratios.conformity))
         .f64("conformity_realised", same(all.ratios.conformity_realised))
         .f64("persson_tosatti", same(all.ratios.persson_tosatti))
@@ -61,19 +53,15 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
         .f64("tabor_mean", tabor(|of| of.mean))
         .f64("low_tabor_share", tabor(|of| of.low_share))
         .f64("fuller_tabor", same(all.fuller_tabor))
-        .f64(
-            "elements_per_wavelength",
-            same(computed.per_wavelength.map(|points| surface.per_shortest_wavelength(points))),
-        )
+        .f64("elements_per_wavelength", same(per_wavelength))
         .f64("area_adhesionless", at_load.iter().map(|at| at.area_adhesionless))
         .f64("area_adhesionless_small", at_load.iter().map(|at| at.area_adhesionless_small))
         .f64("area_jkr_curve", each(|at| at.jkr_curve.map(|found| found.area_m2), nominal_m2))
         .f64("pull_off_jkr_curve", each(|at| at.jkr_curve.map(|found| found.pull_off_m2), nominal_m2))
         .f64("loss_jkr_curve", each(|at| at.jkr_curve.map(|found| found.loss_m3), nominal_m2 * rms_height_m))
         .f64("loss_touched", reversals.iter().map(by_asperities));
-    for (columns, of) in
-        [(&DENG_KESARI, all.deng_kesari), (&DENG_KESARI_REALISED, Some(all.deng_kesari_realised))]
-    {
+    let of_realised = Some(all.deng_kesari_realised);
+    for (columns, of) in [(&DENG_KESARI, all.deng_kesari), (&DENG_KESARI_REALISED, of_realised)] {
         for (place, column) in columns.iter().enumerate() {
             frame = frame.f64(column.name, same(of.and_then(|of| of.nominal_j[place])));
         }
@@ -104,7 +92,8 @@ fn touched(cycle: &Cycle<()>, (turning, max_load): (usize, f64)) -> Vec<usize> {
 }
 
 /// Dissipated energy below which that of a loop is not resolved \[J\]; nothing without its unloading.
-fn resolution_j(cycle: &Cycle<()>, (turning, max_load): (usize, f64)) -> Option<f64> {
+fn resolution_j(cycle: &Cycle<()>, turning: Option<(usize, f64)>) -> Option<f64> {
+    let (turning, max_load) = turning?;
     let loading = || cycle.steps[..=turning].iter().filter(|step| step.branch == Branch::Loading);
     let unloading = || cycle.steps.iter().filter(|step| step.max_load == Some(max_load));
     let at_reversal = loading().next_back()?.work_j;

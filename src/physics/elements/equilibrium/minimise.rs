@@ -17,9 +17,9 @@
 
 use super::increment::{SinglePrecisionIncrement, level};
 use super::pairs::{Gradient, Pairs};
-use super::passes::{Found, PAIRS, Points, Right, Stride, advance, descending};
+use super::passes::{Found, Points, Stride, advance};
 use super::preconditioner::Preconditioner;
-use super::trial::{AcceptedStep, Descent, Residual, Trial, TrialEvaluation};
+use super::trial::{Residual, TrialEvaluation};
 use crate::PhysicsError;
 use crate::elements::grid::half_space::{Operator, Waves};
 use crate::elements::grid::sums::grain;
@@ -114,9 +114,9 @@ pub(crate) enum ElasticResponse {
 
 /// Change of the displacement: `length` times the direction less its `mean`.
 #[derive(Debug, Clone, Copy, Default)]
-struct Shift {
-    length: f64,
-    mean: f64,
+pub(super) struct Shift {
+    pub(super) length: f64,
+    pub(super) mean: f64,
 }
 
 /// Fields that a step reads and changes.
@@ -254,8 +254,8 @@ impl Minimiser {
             }
             outcome.iterations += 1;
             let descent = self.search(problem);
-            let Some((step, residual)) = self.descend(problem, state, descent, ElasticResponse::Transformed)
-            else {
+            let found = self.descend(problem, state, descent, ElasticResponse::Transformed);
+            let Some((step, residual)) = found else {
                 self.commit(state);
                 if exact {
                     return outcome;
@@ -268,20 +268,16 @@ impl Minimiser {
             };
             (here, exact) = (residual, false);
             change += step.largest;
-            if change > limits.bond_update_change * problem.reach()
-                && here.largest <= limits.bond_update_residual * stress
-            {
+            let is_settled = here.largest <= limits.bond_update_residual * stress;
+            if change > limits.bond_update_change * problem.reach() && is_settled {
                 change = 0.0;
                 let late = outcome.iterations >= limits.whole_iterations;
                 outcome.left = late && !loads.contains(&self.load());
                 if outcome.left {
                     return outcome;
                 }
-                let changed = problem.spread_bonds(
-                    &mut state.bonds,
-                    &self.increment.touching,
-                    &mut self.increment.stale,
-                );
+                let (increment, bonds) = (&mut self.increment, &mut state.bonds);
+                let changed = problem.spread_bonds(bonds, &increment.touching, &mut increment.stale);
                 if !changed.is_empty() {
                     self.increment.rebond(problem, &state.bonds, &changed);
                     if late && let Some(local) = local.as_mut() {
@@ -292,13 +288,8 @@ impl Minimiser {
                     here = self.present_residual(problem, state);
                 }
             }
-            self.pairs.push_pair(
-                &mut self.direction,
-                descent.mean,
-                step.length,
-                &self.gradient,
-                &self.previous,
-            );
+            let Self { pairs, direction, gradient, previous, .. } = self;
+            pairs.push_pair(direction, descent.mean, step.length, gradient, previous);
         }
     }
 
@@ -372,12 +363,12 @@ impl Minimiser {
 
     /// Mean of a field of which the sum is given, to be subtracted: none on a patch, where the mean is not
     /// fixed.
-    fn mean(&self, problem: &Problem, sum: f64) -> f64 {
+    pub(super) fn mean(&self, problem: &Problem, sum: f64) -> f64 {
         if problem.half_space.is_patch() { 0.0 } else { sum / self.slopes.len() as f64 }
     }
 
     /// Moves the state along the direction, and computes the gradient and the slopes of the law there.
-    fn evaluate(
+    pub(super) fn evaluate(
         &mut self,
         problem: &Problem,
         state: &State,
@@ -440,95 +431,5 @@ impl Minimiser {
     /// Residual of the present state.
     fn present_residual(&mut self, problem: &Problem, state: &State) -> Residual {
         self.evaluate(problem, state, Shift::default(), ElasticResponse::Kept).residual
-    }
-
-    /// A direction of descent, by the pairs if they give one, and its wave.
-    fn search(&mut self, problem: &Problem) -> Descent {
-        let weights = self.pairs.first();
-        let onto = self.precondition(problem, weights);
-        let descent = self.descent(problem, self.pairs.second(weights, onto));
-        if descent.slope < 0.0 {
-            return descent;
-        }
-        self.pairs.clear();
-        self.precondition(problem, [0.0; PAIRS]);
-        self.descent(problem, [0.0; PAIRS])
-    }
-
-    /// `direction ← M⁻¹ (gradient − Σ weights_i y_i)`: its products with the changes `y`.
-    fn precondition(&mut self, problem: &Problem, weights: [f64; PAIRS]) -> [f64; PAIRS] {
-        let Self { preconditioner, single, direction, gradient, pairs, slopes, .. } = self;
-        let weights = weights.map(|weight| weight as f32);
-        let right =
-            Right { field: &gradient.values, mean: gradient.mean as f32, changes: pairs.changes(), weights };
-        preconditioner.divide(problem, single, direction, &right, slopes)
-    }
-
-    /// Adds the weighted steps of the pairs to the direction and transforms its rows.
-    fn descent(&mut self, problem: &Problem, weights: [f64; PAIRS]) -> Descent {
-        let columns = problem.half_space.columns();
-        let weights = weights.map(|weight| weight as f32);
-        let [a, b] = self.pairs.steps().map(|step| step.par_chunks(columns));
-        let rows = self
-            .direction
-            .par_chunks_mut(columns)
-            .zip(a.zip(b))
-            .zip(self.gradient.values.par_chunks(columns));
-        let parts =
-            problem.half_space.forward(&mut self.single, rows, |((direction, (a, b)), gradient), to| {
-                descending(direction, to, [a, b], weights, gradient)
-            });
-        let [sum, product, largest] = parts
-            .iter()
-            .fold([0.0; 3], |all: [f64; 3], part| [all[0] + part[0], all[1] + part[1], all[2].max(part[2])]);
-        let mean = self.mean(problem, sum);
-        Descent {
-            mean,
-            slope: product - self.slopes.len() as f64 * mean * self.gradient.mean,
-            largest: largest + mean.abs(),
-        }
-    }
-
-    /// Moves the state along the direction by at most the reach of the law and so far that the energy falls:
-    /// the step and the residual after it. Without such a step the state stays.
-    pub(crate) fn descend(
-        &mut self,
-        problem: &Problem,
-        state: &State,
-        descent: Descent,
-        response: ElasticResponse,
-    ) -> Option<(AcceptedStep, Residual)> {
-        let mut trial = Trial::new(descent);
-        let length = (problem.reach() / descent.largest).min(1.0);
-        std::mem::swap(&mut self.gradient, &mut self.previous);
-        let there = self.evaluate(problem, state, Shift { length, mean: descent.mean }, response);
-        if trial.suffices(length, &there) {
-            return Some((AcceptedStep { length, largest: length * descent.largest }, there.residual));
-        }
-        self.shorten(problem, state, trial)
-    }
-
-    /// As [`Self::descend`], with a known response and after a first trial.
-    fn shorten(
-        &mut self,
-        problem: &Problem,
-        state: &State,
-        mut trial: Trial,
-    ) -> Option<(AcceptedStep, Residual)> {
-        let Descent { mean, largest, .. } = trial.descent;
-        for _ in 0..problem.numerics.equilibrium.shortenings {
-            let shorter = trial.shorter();
-            let there = self.evaluate(
-                problem,
-                state,
-                Shift { length: shorter - trial.length, mean },
-                ElasticResponse::Kept,
-            );
-            if trial.suffices(shorter, &there) {
-                return Some((AcceptedStep { length: shorter, largest: shorter * largest }, there.residual));
-            }
-        }
-        self.evaluate(problem, state, Shift { length: -trial.length, mean }, ElasticResponse::Kept);
-        None
     }
 }

@@ -1,6 +1,7 @@
 //! Equilibrium on a grid: L-BFGS with events followed on patches, and Newton's method where that does not
 //! end.
 
+mod descent;
 mod increment;
 pub mod minimise;
 pub(crate) mod newton;

@@ -44,6 +44,25 @@ pub(super) struct Geometry {
     rough: Meshes<f32, INTERMEDIATE_WIDTH, INTERMEDIATE_ORDERS>,
 }
 
+/// Finds the pairs of all targets in chunks, in parallel if there are many; `find` is given the place of the first
+/// target of its chunk.
+fn find_in_chunks(
+    all: &mut Vec<Pairs>,
+    targets: &[usize],
+    find: impl Fn(&mut Pairs, usize, &[usize]) + Sync,
+) {
+    all.resize_with(targets.len().div_ceil(TARGETS_PER_CHUNK), Pairs::default);
+    let of_chunk = |((chunk, pairs), targets): ((usize, &mut Pairs), &[usize])| {
+        find(pairs, chunk * TARGETS_PER_CHUNK, targets);
+    };
+    if targets.len() < PARALLEL_TARGETS {
+        all.iter_mut().enumerate().zip(targets.chunks(TARGETS_PER_CHUNK)).for_each(of_chunk);
+    } else {
+        let chunks = all.par_iter_mut().enumerate().zip(targets.par_chunks(TARGETS_PER_CHUNK));
+        chunks.with_min_len(MIN_CHUNKS).for_each(of_chunk);
+    }
+}
+
 impl FastSum {
     /// Updates the geometry for spots and targets, both by rank.
     ///
@@ -96,25 +115,14 @@ impl FastSum {
         let before = kept.as_ref().map(|kept| kept.targets.as_slice());
         let numbers = kept.as_ref().map_or(&[][..], |kept| &kept.numbers);
         let known = Known { pairs: &geometry.old, numbers, changed: &others };
-        geometry.pairs.resize_with(targets.len().div_ceil(TARGETS_PER_CHUNK), Pairs::default);
-        let find = |((chunk, pairs), targets): ((usize, &mut Pairs), &[usize])| {
+        let find = |pairs: &mut Pairs, first: usize, targets: &[usize]| {
             let target = |(k, target): (usize, &usize)| Target {
                 place: self.order.positions[*target],
-                before: before.and_then(|before| before[chunk * TARGETS_PER_CHUNK + k]),
+                before: before.and_then(|before| before[first + k]),
             };
             pairs.find(targets.iter().enumerate().map(target), known, &all, self.measure, &aloof);
         };
-        if targets.len() < PARALLEL_TARGETS {
-            geometry.pairs.iter_mut().enumerate().zip(targets.chunks(TARGETS_PER_CHUNK)).for_each(find);
-        } else {
-            geometry
-                .pairs
-                .par_iter_mut()
-                .enumerate()
-                .zip(targets.par_chunks(TARGETS_PER_CHUNK))
-                .with_min_len(MIN_CHUNKS)
-                .for_each(find);
-        }
+        find_in_chunks(&mut geometry.pairs, targets, find);
         self.place_meshes(&levels, targets, kept.as_ref(), geometry);
     }
 
