@@ -5,8 +5,9 @@ use crate::stats::{StatsError, labels_with_unit};
 use crate::store::Frame;
 use maud::{Markup, html};
 
-const DATA: &str = "All numbers of this report are in the tables of this folder. `datapackage.json` describes each column with unit and \
-    equation. `statistics/panels.parquet` holds the data of the figures. In Python, with the folder of this report as working directory:";
+const DATA: &str = "All numbers of this report are in the tables of this folder. `datapackage.json` \
+    describes each column with unit and equation. `statistics/panels.parquet` holds the data of the figures. \
+    In Python, with the folder of this report as working directory:";
 
 const PYTHON: &str = r#"import polars as pl          # or pandas: pd.read_parquet, or DuckDB: SELECT * FROM 'statistics/cases.parquet'
 cases = pl.read_parquet("statistics/cases.parquet")
@@ -18,9 +19,10 @@ events = pl.scan_parquet("cycles/*/events.parquet").join(cycles, on="cycle_id").
 const R: &str = r#"cases <- read.csv("csv/cases.csv")
 plot(cases$area_at_max_load_mean, cases$loss_mean)"#;
 
-const CITATION: &str = "Model: G. Violano and L. Afferrante, “Roughness-induced adhesive hysteresis in self-affine fractal surfaces”, \
-    Lubricants 9(1):7, 2021, with corrected equations; the guide of hysteron lists the corrections. The provenance records in `receipts/` state program, \
-    commit and compiler of each file.";
+const CITATION: &str = "Model: G. Violano and L. Afferrante, “Roughness-induced adhesive hysteresis in \
+    self-affine fractal surfaces”, Lubricants 9(1):7, 2021, with corrected equations; the guide of hysteron \
+    lists the corrections. The provenance records in `receipts/` state program, commit and compiler of each \
+    file.";
 
 /// Files and folders of the run that the page links.
 const FILES: [&str; 5] = ["campaign.toml", "datapackage.json", "statistics/", "figures/", "receipts/"];
@@ -68,8 +70,8 @@ pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsE
     let mut text = unfinished(cases)?;
     if let (Some(zeta), Some(hurst)) = (range("magnification")?, range("hurst")?) {
         text += &format!(
-            "Self-affine rough surfaces with Hurst exponent H = {hurst} and magnification ζ = {zeta} were generated from their power spectrum \
-             ({} per case, seed {}). ",
+            "Self-affine rough surfaces with Hurst exponent H = {hurst} and magnification ζ = {zeta} were \
+             generated from their power spectrum ({} per case, seed {}). ",
             study.realizations_text, study.seed
         );
     }
@@ -79,8 +81,8 @@ pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsE
     let program = concat!("hysteron ", env!("CARGO_PKG_VERSION"));
     if asperities > 0 {
         text += &format!(
-            "Loading–unloading cycles of elastically interacting JKR asperities were computed with {program} after Violano and Afferrante (2021), with \
-             corrected equations. "
+            "Loading–unloading cycles of elastically interacting JKR asperities were computed with {program} \
+             after Violano and Afferrante (2021), with corrected equations. "
         );
     }
     if elements > 0 {

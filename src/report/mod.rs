@@ -134,8 +134,8 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
 
 const EXPLORER_NOTE: &str = "One cycle of each case. The slider moves along the loop.";
 
-const SPOTS_NOTE: &str = " Rings mark the events of a step or of an avalanche. Contacts between stored steps follow from the events; `contacts = \"all\"` in the spec \
-    stores every step.";
+const SPOTS_NOTE: &str = " Rings mark the events of a step or of an avalanche. Contacts between stored steps \
+    follow from the events; `contacts = \"all\"` in the spec stores every step.";
 
 const MAPS_NOTE: &str = " The map is the stored one that is nearest on the loop.";
 
@@ -168,8 +168,8 @@ fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
     }
 }
 
-const SYMBOLS: &str = "E*: reduced modulus; A_{0}: nominal area; h_{rms}: root-mean-square height; Δγ: work of adhesion; Δ: mean penetration; \
-    F: normal load, positive in compression.";
+const SYMBOLS: &str = "E*: reduced modulus; A_{0}: nominal area; h_{rms}: root-mean-square height; Δγ: work \
+    of adhesion; Δ: mean penetration; F: normal load, positive in compression.";
 
 const ASPERITIES: &str = "Interacting asperities of Johnson, Kendall and Roberts (JKR) after Violano and \
      Afferrante, Lubricants 9(1):7 (2021), with corrected equations. ";

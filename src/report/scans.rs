@@ -5,14 +5,17 @@ use crate::model::Choice;
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader};
 use maud::{Markup, html};
 
-const NOTE: &str = "Each measured surface is one realization, without a standard deviation. Area kept: fraction of the scan in the \
-    central square of side L. h_{rms} and rms slope: after levelling and S-filter. S-filter: low-pass filter, Gaussian (ISO 16610-61) or \
-    sharp. Removed: rms heights of the short wavelengths and of the form subtracted by levelling. Overshoot: height of filtered maxima above the \
-    measured heights nearby, beyond the noise. Filled: missing points interpolated (harmonic in-fill). Outliers: isolated points beyond 6 robust \
-    standard deviations of their neighbours, replaced and left. Line offsets: rms offset between scan lines, removed and left. Tip cut-off: \
-    shortest wavelength that a tip of the stated radius traces reliably. H: Hurst exponent of the self-affine fit, with its \
-    rms deviation in decades; outside 0 to 1 the spectrum is not self-affine. \
-    Texture aspect: larger of the ratio of the principal rms slopes and 1/Str (ISO 25178). Cuts: wavelengths between which the spectrum holds data.";
+const NOTE: &str = "Each measured surface is one realization, without a standard deviation. Area kept: \
+    fraction of the scan in the central square of side L. h_{rms} and rms slope: after levelling and \
+    S-filter. S-filter: low-pass filter, Gaussian (ISO 16610-61) or sharp. Removed: rms heights of the short \
+    wavelengths and of the form subtracted by levelling. Overshoot: height of filtered maxima above the \
+    measured heights nearby, beyond the noise. Filled: missing points interpolated (harmonic in-fill). \
+    Outliers: isolated points beyond 6 robust standard deviations of their neighbours, replaced and left. \
+    Line offsets: rms offset between scan lines, removed and left. Tip cut-off: shortest wavelength that a \
+    tip of the stated radius traces reliably. H: Hurst exponent of the self-affine fit, with its rms \
+    deviation in decades; outside 0 to 1 the spectrum is not self-affine. Texture aspect: larger of the \
+    ratio of the principal rms slopes and 1/Str (ISO 25178). Cuts: wavelengths between which the spectrum \
+    holds data.";
 
 const HEADS: [&str; 18] = [
     "file",

@@ -48,9 +48,10 @@ const VALIDITY: [(&str, &str, Option<&str>, Shown); 10] = [
     ),
 ];
 
-const BUDGET_NOTE: &str = "Θ is the area of the loop. The energies of all events sum to the same value if the energy balance is exact; the \
-    energy-balance error is the difference over Θ. Both are over E*A_{0}h_{rms}. The percentages are fractions of the sum over events: by \
-    branch, and by the kind of event that triggers each relaxation.";
+const BUDGET_NOTE: &str = "Θ is the area of the loop. The energies of all events sum to the same value if \
+    the energy balance is exact; the energy-balance error is the difference over Θ. Both are over \
+    E*A_{0}h_{rms}. The percentages are fractions of the sum over events: by branch, and by the kind of \
+    event that triggers each relaxation.";
 
 const ABSORPTION_NOTE: &str =
     " Absorption and release have no potential, so their fractions may be negative.";
@@ -114,11 +115,12 @@ const OF_SPOTS: [&str; 5] = [
     "covered_share_mean",
 ];
 
-const RANGE_NOTE: &str = "An asperity model is outside its range where contacts coalesce: it then underestimates the contact area \
-    of a boundary-element solution by a third, even without adhesion.";
+const RANGE_NOTE: &str = "An asperity model is outside its range where contacts coalesce: it then \
+    underestimates the contact area of a boundary-element solution by a third, even without adhesion.";
 
 const VALIDITY_NOTE: &str = "Numbers beyond their limit are bold. U_{el} is the elastic energy per area \
-    that flattens the roughness, Δγ the work of adhesion: for the realised spectrum of the surfaces, and in brackets for the target spectrum.";
+    that flattens the roughness, Δγ the work of adhesion: for the realised spectrum of the surfaces, and in \
+    brackets for the target spectrum.";
 
 /// The indicators of model validity with their limits, and the warnings.
 pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
