@@ -9,12 +9,17 @@ const DATA: &str = "All numbers of this report are in the tables of this folder.
     describes each column with unit and equation. `statistics/panels.parquet` holds the data of the figures. \
     In Python, with the folder of this report as working directory:";
 
-const PYTHON: &str = r#"import polars as pl          # or pandas: pd.read_parquet, or DuckDB: SELECT * FROM 'statistics/cases.parquet'
-cases = pl.read_parquet("statistics/cases.parquet")
-print(cases.select("case_id", "max_load", "loss_mean", "loss_ci95_low", "loss_ci95_high"))
-# All events with the parameters of their cycle. Cases that share a cycle have one row each in the table cycles: keep one of them.
-cycles = pl.scan_parquet("statistics/cycles.parquet").drop("case_id", "realization", "method").unique("cycle_id")
-events = pl.scan_parquet("cycles/*/events.parquet").join(cycles, on="cycle_id").collect()"#;
+const PYTHON: &str = concat!(
+    "import polars as pl          # or pandas: pd.read_parquet, or DuckDB: SELECT * FROM \
+     'statistics/cases.parquet'\n",
+    "cases = pl.read_parquet(\"statistics/cases.parquet\")\n",
+    "print(cases.select(\"case_id\", \"max_load\", \"loss_mean\", \"loss_ci95_low\", \"loss_ci95_high\"))\n",
+    "# All events with the parameters of their cycle. Cases that share a cycle have one row each in the \
+     table cycles: keep one of them.\n",
+    "cycles = pl.scan_parquet(\"statistics/cycles.parquet\")\
+     .drop(\"case_id\", \"realization\", \"method\").unique(\"cycle_id\")\n",
+    "events = pl.scan_parquet(\"cycles/*/events.parquet\").join(cycles, on=\"cycle_id\").collect()",
+);
 
 const R: &str = r#"cases <- read.csv("csv/cases.csv")
 plot(cases$area_at_max_load_mean, cases$loss_mean)"#;
@@ -139,8 +144,20 @@ pub(super) fn usage() -> Markup {
 pub(super) fn citation() -> Markup {
     html! {
         (heading("Citation"))
-        (line(&html! { p { "Computed with hysteron " (env!("CARGO_PKG_VERSION")) " (MIT OR Apache-2.0). " (prose(CITATION)) } }))
+        (line(&html! {
+            p {
+                "Computed with hysteron " (env!("CARGO_PKG_VERSION")) " (MIT OR Apache-2.0). "
+                (prose(CITATION))
+            }
+        }))
         (line(&html! { pre.copy { (BIBTEX.replace("VERSION", env!("CARGO_PKG_VERSION"))) } }))
-        (line(&html! { p { "Files: " @for (place, name) in FILES.iter().enumerate() { @if place > 0 { " · " } a href=(name) { (name) } } } }))
+        (line(&html! {
+            p {
+                "Files: "
+                @for (place, name) in FILES.iter().enumerate() {
+                    @if place > 0 { " · " } a href=(name) { (name) }
+                }
+            }
+        }))
     }
 }

@@ -94,7 +94,9 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     let body = html! {
         (results::results(&cases)?)
         (results::changes(&cases)?)
-        @if let Some(chart) = report.sensitivity { (heading("Sensitivity")) (layout::figure(&numbers, chart)) }
+        @if let Some(chart) = report.sensitivity {
+            (heading("Sensitivity")) (layout::figure(&numbers, chart))
+        }
         (methods::side_by_side(&cases, report.methods, report.method_figures, &numbers)?)
         (scans::scans(report.scans))
         @if has_results {
@@ -163,7 +165,9 @@ fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
         @if panels.is_empty() {
             p { "No cycle of this sweep has finished." } "\n"
         } @else {
-            section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels)) } "\n"
+            section {
+                (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels))
+            } "\n"
         }
     }
 }
@@ -181,7 +185,8 @@ const ELEMENTS: &str = "Adhesive boundary elements: the rough surface on a grid,
 fn introduction(report: &Report<'_>) -> Markup {
     let [asperities, elements] = report.case_counts;
     html! {
-        "Adhesive hysteresis of rough surfaces: " (counted(asperities + elements, "case")) ", " (report.realizations_text) " each. "
+        "Adhesive hysteresis of rough surfaces: " (counted(asperities + elements, "case")) ", "
+        (report.realizations_text) " each. "
         @if asperities > 0 { (ASPERITIES) }
         @if elements > 0 { (ELEMENTS) }
         (prose(SYMBOLS))

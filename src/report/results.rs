@@ -93,9 +93,15 @@ fn result(
         (scaled(mean, scale))
         @match (low, high) {
             (Some(_), Some(_)) if values.len() < FEW => {
-                " " small { "{" @for (place, value) in values.iter().enumerate() { @if place > 0 { "; " } (text(*value)) } "}" }
+                " " small {
+                    "{"
+                    @for (place, value) in values.iter().enumerate() { @if place > 0 { "; " } (text(*value)) }
+                    "}"
+                }
             }
-            (Some(low), Some(high)) => { " " small { "[" @if is_cut(low) { "0†" } @else { (text(low)) } ", " (text(high)) "]" } }
+            (Some(low), Some(high)) => {
+                " " small { "[" @if is_cut(low) { "0†" } @else { (text(low)) } ", " (text(high)) "]" }
+            }
             _ => {}
         }
     })
@@ -128,9 +134,10 @@ pub(super) fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         return Ok(Markup::default());
     }
     let head = html! { (name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
-    Ok(
-        html! { (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n" (wide("differences", &head, &rows)) },
-    )
+    Ok(html! {
+        (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n"
+        (wide("differences", &head, &rows))
+    })
 }
 
 /// A relative difference with the half-width of its interval; bold if it is larger than that.

@@ -54,7 +54,10 @@ fn artefacts(of: &Measured) -> Markup {
     let Some(quality) = of.quality else { return html! { td { "–" } td { "–" } td { "–" } } };
     html! {
         td { (quality.outlier_count) " / " (quality.outlier_left_count) }
-        td { (length(quality.line_offset_m)) " / " (length(Some(quality.line_jump_m).filter(|jump| *jump > 0.0))) }
+        td {
+            (length(quality.line_offset_m)) " / "
+            (length(Some(quality.line_jump_m).filter(|jump| *jump > 0.0)))
+        }
         td { (length(quality.tip_cutoff_m)) }
     }
 }
@@ -73,7 +76,12 @@ fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
         td { (of.missing_count) }
         (artefacts(of))
         td { (of.texture.map_or_else(|| "–".to_owned(), |texture| format!("{:.2}", texture.aspect()))) }
-        td { (of.fit.map_or_else(|| "–".to_owned(), |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter))) }
+        td {
+            (of.fit.map_or_else(
+                || "–".to_owned(),
+                |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter),
+            ))
+        }
         td { (of.fit.map_or_else(|| "–".to_owned(), |fit| ends(&fit, header.length_m))) }
     }
 }

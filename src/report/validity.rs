@@ -78,9 +78,11 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     };
     let rows =
         cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
-    Ok(
-        html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) @if cases.has_spots()? { (ABSORPTION_NOTE) } } "\n" (wide("energy", &head, &rows)) },
-    )
+    Ok(html! {
+        (heading("Energy budget"))
+        p { (prose(BUDGET_NOTE)) @if cases.has_spots()? { (ABSORPTION_NOTE) } } "\n"
+        (wide("energy", &head, &rows))
+    })
 }
 
 fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[EventKind]) -> Result<Markup, StatsError> {
@@ -169,7 +171,12 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         } @else {
             div.scroll role="region" aria-label="Table of warnings" tabindex="0" { table {
                 "\n"
-                thead { tr { th { "warning (code)" } th { "measured" } th { "consequence and action" } th { "cases, at " (prose(LOAD)) } } } "\n"
+                thead {
+                    tr {
+                        th { "warning (code)" } th { "measured" } th { "consequence and action" }
+                        th { "cases, at " (prose(LOAD)) }
+                    }
+                } "\n"
                 tbody {
                 @for Warning { kind, measured, rows } in &found {
                     tr {
@@ -204,7 +211,9 @@ fn places(cases: &Cases<'_>, rows: &[usize]) -> Markup {
         }
     }
     let list = html! {
-        @for (place, (label, loads)) in groups.iter().enumerate() { @if place > 0 { br; } (label) " at " (loads.join(", ")) }
+        @for (place, (label, loads)) in groups.iter().enumerate() {
+            @if place > 0 { br; } (label) " at " (loads.join(", "))
+        }
     };
     html! {
         @if groups.len() > MOST_PLACES {

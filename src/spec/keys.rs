@@ -193,8 +193,8 @@ pub(super) static KEYS: &[Key] = &[
     key!(surface.amplitudes in generated.amplitudes, "", "Amplitudes of the Fourier components.";
         word Amplitudes),
     key!(surface.file in measured.file, "", "File of a measured surface. With this key, the surface is \
-         imported and not generated."; text 4096, "the file of a measured surface, from the working directory \
-         or the folder of the spec"),
+         imported and not generated.";
+        text 4096, "the file of a measured surface, from the working directory or the folder of the spec"),
     key!(surface.dataset in measured.dataset, "", "Field of the file, if it has several: a dataset of HDF5, \
          a variable of NetCDF."; text 256, "a dataset of the file"),
     key!(surface.periodic in measured.periodic, "", "True if the measured surface is periodic."; flag),
@@ -235,8 +235,8 @@ pub(super) static KEYS: &[Key] = &[
          deviations of their neighbours. If false, they cause a warning."; flag),
     key!(surface.align_rows in measured.align_rows, "", "If true, the offsets of scan lines of a measured \
          surface are removed (median of differences). If false, offsets cause a warning."; flag),
-    key!(surface.fast_axis in measured.fast_axis, "", "Direction of the scan lines, with `align_rows = true`.";
-        word FastAxis),
+    key!(surface.fast_axis in measured.fast_axis, "", "Direction of the scan lines, with `align_rows = \
+         true`."; word FastAxis),
     key!(surface.tip_radius_m in measured.tip_radius_m, "R_tip", "Radius of the tip that measured the \
          surface. Wavelengths below its reliability cut-off are removed. 0: no tip, or \
          unknown."; number Limits {

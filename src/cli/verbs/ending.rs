@@ -192,7 +192,10 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
         .tallies
         .iter()
         .map(|(stage, t)| {
-            json!({ "stage": stage.word(), "planned_count": t.planned, "done_before_count": t.before, "computed_count": t.computed, "failed_count": t.failed })
+            json!({
+                "stage": stage.word(), "planned_count": t.planned, "done_before_count": t.before,
+                "computed_count": t.computed, "failed_count": t.failed,
+            })
         })
         .collect();
     let failures: Vec<_> = ended.failures.iter().map(|(id, why)| json!({ "id": id, "why": why })).collect();

@@ -34,9 +34,11 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
     let texture = measured.and_then(|of| of.texture.as_ref());
     let fit = measured.and_then(|of| of.fit).map(|fit| {
         json!({
-            "hurst": fit.hurst, "plateau_m4": fit.plateau_m4, "roll_off_1_m": fit.roll_off_1_m, "scatter": fit.scatter,
-            "rolls_off": fit.rolls_off, "roll_off_m": fit.roll_off_m(header.length_m), "long_cut_m": fit.long_cut_m,
-            "short_cut_m": fit.short_cut.map(|(wavelength, _)| wavelength), "short_cut_cause": fit.short_cut.map(|(_, cause)| cause.word()),
+            "hurst": fit.hurst, "plateau_m4": fit.plateau_m4, "roll_off_1_m": fit.roll_off_1_m,
+            "scatter": fit.scatter, "rolls_off": fit.rolls_off,
+            "roll_off_m": fit.roll_off_m(header.length_m), "long_cut_m": fit.long_cut_m,
+            "short_cut_m": fit.short_cut.map(|(wavelength, _)| wavelength),
+            "short_cut_cause": fit.short_cut.map(|(_, cause)| cause.word()),
         })
     });
     let mut answer = json!({
