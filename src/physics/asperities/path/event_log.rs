@@ -155,7 +155,7 @@ mod tests {
             [Transition::split(5), Transition::uncover(2, 3), Transition::jump_off(1)];
         let mut log = EventLog::default();
         let record = |log: &mut EventLog, change| {
-            log.record(&[(change, SpotStatus::Free)], 0.0, [Totals::default(); 2], 0.0)
+            log.record(&[(change, SpotStatus::Free)], 0.0, [Totals::default(); 2], 0.0);
         };
         for change in [split, jump, split] {
             log.begin_avalanche();
