@@ -25,7 +25,10 @@ use std::process::ExitCode;
 
 /// Simulate adhesion hysteresis of rough surfaces (interacting JKR asperities)
 #[derive(Debug, Parser)]
-#[command(version, term_width = 80, next_line_help = true, help_template = help::template(), after_help = help::EXIT_CODES)]
+#[command(
+    version, term_width = 80, next_line_help = true, help_template = help::template(),
+    after_help = help::EXIT_CODES
+)]
 pub struct Arguments {
     #[command(subcommand)]
     verb: Verb,
@@ -47,7 +50,10 @@ enum Verb {
     Run {
         #[command(flatten)]
         campaign: CampaignArguments,
-        #[arg(long, value_enum, value_name = "STAGE", default_value = "report", hide_possible_values = true, help = help::UNTIL)]
+        #[arg(
+            long, value_enum, value_name = "STAGE", default_value = "report", hide_possible_values = true,
+            help = help::UNTIL
+        )]
         until: StageArgument,
         /// Count pending tasks without running them, as `plan` does
         #[arg(long, short = 'n')]
@@ -170,7 +176,10 @@ enum Verb {
         #[command(flatten)]
         shards: ShardsArguments,
         /// Threads of each task
-        #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+        #[arg(
+            long, value_name = "N", default_value_t = 1,
+            value_parser = clap::value_parser!(u16).range(1..=1024)
+        )]
         cpus: u16,
         /// Further option of sbatch, e.g. --option=--time=4:00:00; repeatable
         #[arg(long, value_name = "LINE", allow_hyphen_values = true)]

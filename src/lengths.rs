@@ -5,7 +5,8 @@ pub const LENGTHS: &str = "km, m, mm, µm or um, nm, pm, Å or A, in, mil";
 
 /// The units of length as a regular expression of JSON Schema: abbreviations, and any longer word for one
 /// that is written out.
-pub const LENGTH_PATTERN: &str = "^\\s*(km|m|mm|[\u{b5}\u{3bc}]m|um|nm|pm|[\u{c5}\u{212b}]|A\u{30a}?|in|mil|[A-Za-z\u{e5}\u{f6}]{3,})?\\s*$";
+pub const LENGTH_PATTERN: &str = "^\\s*(km|m|mm|[\u{b5}\u{3bc}]m|um|nm|pm|[\u{c5}\u{212b}]|A\u{30a}?|in|mil|\
+    [A-Za-z\u{e5}\u{f6}]{3,})?\\s*$";
 
 /// Length of a unit \[m\]; nothing for an unknown unit.
 #[must_use]

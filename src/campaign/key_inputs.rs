@@ -288,9 +288,10 @@ pub(super) fn of_surface(spec: &Spec, params: &SurfaceSource) -> Value {
     let MeasuredSurface { transpose, missing, detrend, filter, points_per_shortest_wavelength, .. } =
         &**surface;
     let mut reads = json!({
-        "reading_version": READING_VERSION, "blake3": spec.files.get(file), "dataset": dataset, "periodic": periodic,
-        "pixel_m": pixel_m, "size_m": size_m, "size_y_m": size_y_m, "unit": unit, "skip_lines": skip_lines, "width": width,
-        "transpose": transpose, "missing": missing, "detrend": detrend, "filter": filter,
+        "reading_version": READING_VERSION, "blake3": spec.files.get(file), "dataset": dataset,
+        "periodic": periodic, "pixel_m": pixel_m, "size_m": size_m, "size_y_m": size_y_m, "unit": unit,
+        "skip_lines": skip_lines, "width": width, "transpose": transpose, "missing": missing,
+        "detrend": detrend, "filter": filter,
         "points_per_shortest_wavelength": points_per_shortest_wavelength, "method_version": MEASURED_VERSION,
         "header_version": MEASURED_HEADER_VERSION,
     });

@@ -153,7 +153,10 @@ pub(super) struct ImportArguments {
     #[arg(long, value_name = "N")]
     pub(super) skip_lines: Option<u32>,
     /// Points per scan line of a text with one column
-    #[arg(long, value_name = "N", visible_alias = "columns", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(
+        long, value_name = "N", visible_alias = "columns",
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
     pub(super) width: Option<u32>,
     /// Exchange x and y, for files with the other order of indices
     #[arg(long)]
@@ -161,7 +164,10 @@ pub(super) struct ImportArguments {
     /// Interpolate missing points (harmonic in-fill) instead of failing
     #[arg(long)]
     pub(super) fill: bool,
-    #[arg(long, value_name = "FORM", value_parser = ["mean", "plane", "quadratic"], hide_possible_values = true, help = help::DETREND)]
+    #[arg(
+        long, value_name = "FORM", value_parser = ["mean", "plane", "quadratic"],
+        hide_possible_values = true, help = help::DETREND
+    )]
     pub(super) detrend: Option<String>,
     /// Replace outliers: spikes beyond 6 robust standard deviations
     #[arg(long)]
@@ -169,7 +175,10 @@ pub(super) struct ImportArguments {
     /// Remove the offsets of scan lines (median of differences)
     #[arg(long)]
     pub(super) align_rows: bool,
-    #[arg(long, value_name = "AXIS", requires = "align_rows", value_parser = ["auto", "rows", "columns"], hide_possible_values = true, help = help::FAST_AXIS)]
+    #[arg(
+        long, value_name = "AXIS", requires = "align_rows", value_parser = ["auto", "rows", "columns"],
+        hide_possible_values = true, help = help::FAST_AXIS
+    )]
     pub(super) fast_axis: Option<String>,
     /// Tip radius in metres; removes wavelengths that it cannot trace
     #[arg(long, value_name = "METRES")]
@@ -178,7 +187,10 @@ pub(super) struct ImportArguments {
     #[arg(long)]
     pub(super) periodic: bool,
     /// S-filter: gaussian (ISO 16610-61) or sharp
-    #[arg(long, value_name = "FILTER", default_value = "gaussian", value_parser = ["gaussian", "sharp"], hide_possible_values = true)]
+    #[arg(
+        long, value_name = "FILTER", default_value = "gaussian", value_parser = ["gaussian", "sharp"],
+        hide_possible_values = true
+    )]
     pub(super) filter: String,
     /// Low-pass (S-filter) cut-off wavelength in pixels
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(4..=64))]

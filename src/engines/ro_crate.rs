@@ -85,8 +85,9 @@ pub fn metadata(campaign: &Campaign, receipts: &[Receipt], publication: &Publica
         "@id": "./",
         "@type": "Dataset",
         "name": format!("{}: adhesive hysteresis of rough surfaces", campaign.spec.name),
-        "description": "Loading and unloading of self-affine rough surfaces with interacting JKR asperities, computed with hysteron; \
-                        the spec is campaign.toml, the columns of the tables are described in datapackage.json.",
+        "description": "Loading and unloading of self-affine rough surfaces with interacting JKR asperities, \
+                        computed with hysteron; the spec is campaign.toml, the columns of the tables are \
+                        described in datapackage.json.",
         "datePublished": publication.day,
         "hasPart": one_or_list(ids(&files)),
         "mentions": one_or_list(ids(&actions)),

@@ -156,14 +156,16 @@ pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
     text.push_str(&format!(
         "set -u\nthis={this}\nbegan={mark}-$this.began\n: >\"$began\"\nchild= again=0 stop=0 code=0\n\
          end() {{ stop=1; [ -z \"$child\" ] || kill -TERM \"$child\"; }}\n\
-         # Slurm sends USR1 before the time limit: the current file is finished, and the task returns to the queue.\n\
+         # Slurm sends USR1 before the time limit: the current file is finished, and the task \
+         returns to the queue.\n\
          trap 'again=1; end' USR1\ntrap end TERM\n\
          # A signal that comes before the number of the program is known is passed on as soon as it is.\n\
          work() {{\n  \"$@\" &\n  child=$! code=129\n  [ \"$stop\" = 0 ] || kill -TERM \"$child\"\n  \
-         while [ \"$code\" -gt 128 ] && kill -0 \"$child\" 2>/dev/null; do wait \"$child\"; code=$?; done\n  child=\n}}\n\
+         while [ \"$code\" -gt 128 ] && kill -0 \"$child\" 2>/dev/null; do wait \"$child\"; code=$?; done\n  \
+         child=\n}}\n\
          # A task that has written nothing since its start would be interrupted at the same point again.\n\
          progress() {{ [ -n \"$(find {records} {cycles} -newer \"$began\" \\( -name '*.json' -o -name \
-              halfway.bin \\) -print -quit 2>/dev/null)\" ]; }}\n"
+         halfway.bin \\) -print -quit 2>/dev/null)\" ]; }}\n"
     ));
     if array {
         let (shards, cpus) = (order.shards, order.cpus);
@@ -178,9 +180,12 @@ pub fn script(campaign: &Campaign, stage: Stage, order: &Order) -> String {
         ));
     }
     text.push_str(
-        "if [ \"$again\" = 1 ] && [ \"$code\" -gt 128 ]; then\n  if progress; then\n    scontrol requeue \"$this\"\n  else\n    \
-         echo 'error: no task was finished within the time limit, so the job does not return to the queue' >&2\n    \
-         echo 'help: repeat `hysteron submit` with a longer limit, for example --option=--time=4:00:00' >&2\n    code=1\n  fi\nfi\n\
+        "if [ \"$again\" = 1 ] && [ \"$code\" -gt 128 ]; then\n  \
+         if progress; then\n    scontrol requeue \"$this\"\n  else\n    \
+         echo 'error: no task was finished within the time limit, so the job does not return to the \
+         queue' >&2\n    \
+         echo 'help: repeat `hysteron submit` with a longer limit, for example \
+         --option=--time=4:00:00' >&2\n    code=1\n  fi\nfi\n\
          rm -f \"$began\"\nexit \"$code\"\n",
     );
     text

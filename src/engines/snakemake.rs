@@ -26,7 +26,8 @@ pub fn snakefile(campaign: &Campaign, origin: &Origin<'_>, program: &Path, shard
     let python = |path: &Path| json!(path.display().to_string()).to_string();
     let settings: Vec<String> = origin.settings.iter().map(|setting| format!("--set={setting}")).collect();
     format!(
-        "# The campaign {} in {shards} shards. `hysteron export snakemake` wrote this file, for Snakemake 8 and later.\n\
+        "# The campaign {} in {shards} shards. `hysteron export snakemake` wrote this file, for Snakemake 8 \
+         and later.\n\
          HYSTERON = {}\nSPEC = {}\nSETTINGS = {}\nFOLDER = {}\nDIR = {}\nSHARDS = {shards}\n{RULES}",
         campaign.spec.name,
         python(program),

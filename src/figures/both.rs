@@ -51,7 +51,8 @@ pub fn both(of: &Both<'_>, caption: String) -> Result<Drawing, FigureError> {
         let _ = write!(
             svg,
             "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{name}: A/A_{{0}} = {area:.3}</text>\
-             <g transform=\"translate({left} {})\"><g clip-path=\"url(#both-edge)\"><use xlink:href=\"#both-heights\"/>{drawn}</g>\
+             <g transform=\"translate({left} {})\"><g clip-path=\"url(#both-edge)\">\
+             <use xlink:href=\"#both-heights\"/>{drawn}</g>\
              <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/>{}</g>",
             ABOVE - 12.0,
             ABOVE - 4.0,
@@ -129,8 +130,9 @@ pub fn method_ratios(methods: &Frame) -> Result<Option<Panel>, FigureError> {
     let key = columns.map(|(name, _, hue, stroke)| (name, hue, stroke));
     let drawn = plot("ratio of the methods on each surface".to_owned(), axes.0, axes.1, curves, &key);
     let drawn = XyPlot { stem: "method_ratios".to_owned(), ..drawn };
-    let caption = "Area, pull-off force and dissipated energy of the asperity model over those of boundary elements, each surface a point. Table methods: \
-                   area_at_max_load_ratio, pull_off_load_ratio, loss_ratio over persson_tosatti_realised.";
+    let caption = "Area, pull-off force and dissipated energy of the asperity model over those of boundary \
+                   elements, each surface a point. Table methods: area_at_max_load_ratio, \
+                   pull_off_load_ratio, loss_ratio over persson_tosatti_realised.";
     Ok(Some(Panel {
         stem: drawn.stem.clone(),
         name: "ratios".to_owned(),

@@ -99,12 +99,13 @@ pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
 }
 
 fn spectrum(of: &Closer<'_>) -> String {
-    let rings = "Radially averaged power spectral density of the heights over rings of wavevectors below the cut-off, with ∫C d²q = h_rms² \
-                 (SurfaceTopography: 4π² = 39.48 times C)";
+    let rings = "Radially averaged power spectral density of the heights over rings of wavevectors below the \
+                 cut-off, with ∫C d²q = h_rms² (SurfaceTopography: 4π² = 39.48 times C)";
     match of.asked_factor {
         Some(factor) if (factor - 1.0).abs() > 1e-6 => format!(
-            "{rings}. The sum of Eq 10 over the discrete wavevectors is {} times the target variance, and the heights are scaled to the target rms height. \
-             The realised density therefore follows {} times Eq 10",
+            "{rings}. The sum of Eq 10 over the discrete wavevectors is {} times the target variance, and \
+             the heights are scaled to the target rms height. The realised density therefore follows {} \
+             times Eq 10",
             significant(1.0 / factor, 3),
             significant(factor, 3)
         ),

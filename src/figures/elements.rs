@@ -35,8 +35,8 @@ pub struct ElementsLoop<'a> {
 pub fn elements_loop(of: &ElementsLoop<'_>) -> Result<(Panel, Option<Drawing>), FigureError> {
     let plot = XyPlot { stem: NAME.to_owned(), ..marked(of_loop(of.steps, of.max_load)?) };
     let caption = format!(
-        "Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and back by boundary elements, for {}. Shaded: dissipated energy \
-         Θ/(E*A₀h_rms). Dotted: pull-off force F_po/(E*A₀).{}",
+        "Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and back by boundary \
+         elements, for {}. Shaded: dissipated energy Θ/(E*A₀h_rms). Dotted: pull-off force F_po/(E*A₀).{}",
         of.parameters,
         captions::data(NAME)
     );

@@ -63,8 +63,9 @@ pub(super) fn map(parameters: &str, steps: &Frame, maps: &LoopMaps) -> Result<Dr
     let scale = Scale::of(shown().into_iter().filter_map(|(_, map)| map));
     let (width, height) = (2.0 * SIDE + 3.0 * GAP, SIDE + ABOVE + GAP + LEGEND);
     let mut svg = format!(
-        "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\
+        "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" \
+         height=\"{height}\" font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" \
+         fill=\"black\">\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
     );
     for (k, (words, map)) in
@@ -78,7 +79,8 @@ pub(super) fn map(parameters: &str, steps: &Frame, maps: &LoopMaps) -> Result<Dr
             svg,
             "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{words}: A/A_{{0}} = {:.3}</text>\
              <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {:.2}</text>\
-             <g transform=\"translate({left} {ABOVE})\"><rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"{APART}\"/>{}\
+             <g transform=\"translate({left} {ABOVE})\">\
+             <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"{APART}\"/>{}\
              <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/>{}</g>",
             ABOVE - 23.0,
             number(&areas),
@@ -149,9 +151,10 @@ fn legend(foot: f64, scale: Scale) -> String {
     let reach = size * LEVELS as f64 + 8.0;
     let _ = write!(
         svg,
-        "<text x=\"{}\" y=\"{foot}\" font-size=\"13\" text-anchor=\"end\">{tensile}</text><text x=\"{}\" y=\"{foot}\" font-size=\"13\">{compressive}</text>\
+        "<text x=\"{}\" y=\"{foot}\" font-size=\"13\" text-anchor=\"end\">{tensile}</text>\
+         <text x=\"{}\" y=\"{foot}\" font-size=\"13\">{compressive}</text>\
          <text x=\"{middle}\" y=\"{}\" font-size=\"12\" text-anchor=\"middle\">colours follow the square \
-              root of the pressure; light grey: out of contact</text></svg>",
+         root of the pressure; light grey: out of contact</text></svg>",
         middle - reach,
         middle + reach,
         foot + 22.0

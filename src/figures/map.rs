@@ -54,9 +54,10 @@ pub(super) fn map(
             svg,
             "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{}: {}</text>\
              <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {:.2}</text>\
-             <g transform=\"translate({left} {top})\"><g clip-path=\"url(#map-edge)\"><use xlink:href=\"#map-heights\"/>{spots}</g>\
+             <g transform=\"translate({left} {top})\"><g clip-path=\"url(#map-edge)\">\
+             <use xlink:href=\"#map-heights\"/>{spots}</g>\
              <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" \
-                  stroke=\"black\"/>{bar}</g>",
+             stroke=\"black\"/>{bar}</g>",
             top - 23.0,
             landmark.words(),
             counted(count, "contact spot"),
@@ -67,8 +68,9 @@ pub(super) fn map(
     }
     svg += &legend(height - LEGEND + 14.0, heights_m);
     let caption = format!(
-        "Contact spots at {} of the loop, for {}. Circles have the contact radius; where they overlap, A counts the area once for each. Heights from their mean. Table \
-         contacts: contact_radius_m, load_n, state.",
+        "Contact spots at {} of the loop, for {}. Circles have the contact radius; where they overlap, A \
+         counts the area once for each. Heights from their mean. Table contacts: contact_radius_m, load_n, \
+         state.",
         counted(landmarks.len(), "point"),
         of.parameters
     );
@@ -79,9 +81,11 @@ pub(super) fn map(
 /// `<prefix>-heights` and `<prefix>-edge`.
 pub(super) fn sheet(width: f64, height: f64, prefix: &str, heights_m: ArrayView2<'_, f64>) -> String {
     format!(
-        "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/><defs><g id=\"{prefix}-heights\">{}</g><clipPath id=\"{prefix}-edge\">\
+        "<svg viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" \
+         xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" height=\"{height}\" \
+         font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\">\
+         <rect width=\"100%\" height=\"100%\" fill=\"white\"/><defs><g id=\"{prefix}-heights\">{}</g>\
+         <clipPath id=\"{prefix}-edge\">\
          <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\"/></clipPath></defs>",
         ground(heights_m)
     )
@@ -109,9 +113,10 @@ pub(super) fn scale_bar(length_m: f64) -> String {
     let text = labels_with_unit("length_m", &[bar]).concat();
     format!(
         "<rect x=\"4\" y=\"{}\" width=\"{:.2}\" height=\"36\" fill=\"white\" fill-opacity=\"0.85\"/>\
-         <rect x=\"10\" y=\"{}\" width=\"{width:.2}\" height=\"3\"/><text x=\"10\" y=\"{}\" font-size=\"12\">{text}</text>\
+         <rect x=\"10\" y=\"{}\" width=\"{width:.2}\" height=\"3\"/>\
+         <text x=\"10\" y=\"{}\" font-size=\"12\">{text}</text>\
          <text x=\"{:.2}\" y=\"{}\" font-size=\"12\">x →</text><text x=\"{:.2}\" y=\"{}\" font-size=\"12\">y \
-              ↑</text>",
+         ↑</text>",
         SIDE - 40.0,
         width + 48.0,
         foot - 3.0,
@@ -130,10 +135,12 @@ pub(super) fn legend(foot: f64, heights_m: ArrayView2<'_, f64>) -> String {
     let [low, high] =
         [low, high].map(|height| labels_with_unit("height_m", &[rounded(height)]).concat().replace('-', "−"));
     let mut svg = format!(
-        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">compressive</text>\
-         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/><text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile</text>\
+        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/>\
+         <text x=\"{}\" y=\"{foot}\" font-size=\"13\">compressive</text>\
+         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/>\
+         <text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile</text>\
          <path d=\"M{} {}l6 6m0 -6l-6 6\" stroke=\"black\"/><text x=\"{}\" y=\"{foot}\" \
-              font-size=\"13\">absorbed by a larger contact</text>",
+         font-size=\"13\">absorbed by a larger contact</text>",
         GAP + 5.0,
         foot - 4.5,
         GAP + 15.0,

@@ -42,9 +42,9 @@ pub fn sensitivity(cases: &Frame, realizations: &Frame) -> Result<Option<Drawing
     let left = rows.iter().map(|row| markup::width(&row.label, TEXT)).fold(0.0, f64::max) + 12.0;
     let (width, foot) = (left + QUANTITIES.len() as f64 * (COLUMN + GAP), 14.0 + rows.len() as f64 * ROW);
     let mut svg = format!(
-        "<svg viewBox=\"0 0 {width:.1} {0:.1}\" xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.1}\" height=\"{0:.1}\" \
-         font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" fill=\"black\"><rect \
-              width=\"100%\" height=\"100%\" fill=\"white\"/>",
+        "<svg viewBox=\"0 0 {width:.1} {0:.1}\" xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.1}\" \
+         height=\"{0:.1}\" font-family=\"DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif\" \
+         fill=\"black\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>",
         foot + 44.0
     );
     for (k, row) in rows.iter().enumerate() {
@@ -68,8 +68,9 @@ pub fn sensitivity(cases: &Frame, realizations: &Frame) -> Result<Option<Drawing
         format!("{all} cases")
     };
     let caption = format!(
-        "Relative differences of the means from the reference case ({reference}) at the same load, {shown}: contact area A, pull-off force F_po and dissipated \
-         energy Θ. Lines: 95 % confidence interval. Data: statistics/cases.parquet and realizations.parquet (area_at_max_load, pull_off_load, loss)."
+        "Relative differences of the means from the reference case ({reference}) at the same load, {shown}: \
+         contact area A, pull-off force F_po and dissipated energy Θ. Lines: 95 % confidence interval. Data: \
+         statistics/cases.parquet and realizations.parquet (area_at_max_load, pull_off_load, loss)."
     );
     Ok(Some(Drawing::new("sensitivity", caption, &markup::render(&svg))))
 }
@@ -133,7 +134,8 @@ fn column(rows: &[Row], place: usize, symbol: &str, (left, foot): (f64, f64)) ->
     }
     let _ = write!(
         svg,
-        "<path d=\"M{0:.1} 10V{foot:.1}\" stroke=\"black\"/><path d=\"M{left:.1} {foot:.1}h{COLUMN}\" stroke=\"black\"/>\
+        "<path d=\"M{0:.1} 10V{foot:.1}\" stroke=\"black\"/>\
+         <path d=\"M{left:.1} {foot:.1}h{COLUMN}\" stroke=\"black\"/>\
          <text x=\"{1:.1}\" y=\"{2:.1}\" font-size=\"14\" text-anchor=\"middle\">{3}</text>",
         at(0.0),
         left + COLUMN / 2.0,

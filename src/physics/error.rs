@@ -116,8 +116,8 @@ pub enum LoopError {
     },
     /// The contacts have a larger area than the nominal one, or one of them spans the square.
     #[error(
-        "the contact area {share:.3} A0 leaves no gap at the mean penetration {mean_penetration_m:.3e} m: the contacts have grown together, and the asperity \
-         model is invalid"
+        "the contact area {share:.3} A0 leaves no gap at the mean penetration {mean_penetration_m:.3e} m: \
+         the contacts have grown together, and the asperity model is invalid"
     )]
     ExcessArea {
         /// Mean penetration Δ \[m\].

@@ -16,8 +16,8 @@
 //! The denominator of Eq 9 is the slope dδ/da of Eq 2, printed as `2a/R − sqrt(πΔγ/(E*a))`. Eq 9 is only an
 //! iteration to the equilibrium, which does not depend on this slope. The end of the branch does: it is where
 //! the slope vanishes, with the printed slope at `a = (πR²Δγ/(4E*))^⅓ = 2^⅓ a_off`. With the printed equation
-//! ([`Asperity::as_printed`]) a spot's branch ends there and the spot leaves contact, at a penetration that is 3 % less deep than `δ_off`.
-//! The printed Eq 4 for `δ_off` is right, so the two do not agree.
+//! ([`Asperity::as_printed`]) a spot's branch ends there and the spot leaves contact, at a penetration that
+//! is 3 % less deep than `δ_off`. The printed Eq 4 for `δ_off` is right, so the two do not agree.
 
 use crate::PhysicsError;
 use crate::constants::Constant;

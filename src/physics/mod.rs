@@ -1,10 +1,10 @@
 //! Adhesive contact of rough surfaces: loading, unloading, and the energy that is dissipated in between.
 //!
 //! Three calls of a library user: a surface ([`surface`]), a method on it ([`asperities::Asperities`] or
-//! [`elements::Elements`]), and its [`run`](cycle::Method::run), which returns a
-//! [`cycle::Cycle`]. All quantities are in SI units; compression and penetration are positive. The crate opens no files. Every method implements [`cycle::Method`].
-//! The numerical choices of each, [`asperities::Numerics`] and [`elements::Numerics`], are options with a
-//! default; their fields state their effect.
+//! [`elements::Elements`]), and its [`run`](cycle::Method::run), which returns a [`cycle::Cycle`]. All
+//! quantities are in SI units; compression and penetration are positive. The crate opens no files. Every
+//! method implements [`cycle::Method`]. The numerical choices of each, [`asperities::Numerics`] and
+//! [`elements::Numerics`], are options with a default; their fields state their effect.
 //!
 //! # A loop of the asperity model
 //! ```
@@ -15,7 +15,9 @@
 //! use hysteron_physics::surface::synthesis::{realization_seed, synthesize};
 //!
 //! let (normalization, amplitudes) = (Normalization::Spectrum, Amplitudes::Fixed);
-//! let spectrum = Spectrum { length_m: 1e-3, rms_height_m: 5e-6, hurst: 0.8, magnification: 6, normalization, amplitudes };
+//! let (length_m, rms_height_m) = (1e-3, 5e-6);
+//! let spectrum =
+//!     Spectrum { length_m, rms_height_m, hurst: 0.8, magnification: 6, normalization, amplitudes };
 //! let surface = synthesize(&spectrum, &realization_seed(1, 0), 48);
 //! let map = HeightMap {
 //!     heights_m: surface.heights_m.view(),
@@ -24,7 +26,8 @@
 //!     shortest_wavelength_m: 1e-3 / 6.0,
 //!     rms_height_m: 5e-6,
 //! };
-//! let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.01, interaction_range_m: 1e-9 };
+//! let material =
+//!     Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.01, interaction_range_m: 1e-9 };
 //! let options = Options { approach_step: 0.05, ..Options::default() };
 //! let cycle = Asperities::new(&map, &material, &[0.002], &options)?.run()?;
 //! let pull_off_n = cycle.steps.iter().map(|step| -step.least_load_n).fold(0.0, f64::max);
@@ -43,11 +46,16 @@
 //! use hysteron_physics::surface::HeightMap;
 //! use ndarray::Array2;
 //!
-//! let heights_m = Array2::from_shape_fn((16, 16), |(i, j)| 2e-7 * ((0.4 * i as f64).sin() + (0.5 * j as f64 + 1.0).sin()));
+//! let heights_m = Array2::from_shape_fn((16, 16), |(i, j)| {
+//!     2e-7 * ((0.4 * i as f64).sin() + (0.5 * j as f64 + 1.0).sin())
+//! });
 //! let (length_m, shortest_wavelength_m, rms_height_m) = (1.6e-5, 1.2e-5, 2e-7);
-//! let map = HeightMap { heights_m: heights_m.view(), length_m, is_periodic: false, shortest_wavelength_m, rms_height_m };
-//! let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.002, interaction_range_m: 1e-9 };
-//! let cycle = Elements::new(&map, &material, &[0.01], &Options { points: 32, approach_step: 0.1, ..Options::default() })?.run()?;
+//! let heights_m = heights_m.view();
+//! let map = HeightMap { heights_m, length_m, is_periodic: false, shortest_wavelength_m, rms_height_m };
+//! let material =
+//!     Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.002, interaction_range_m: 1e-9 };
+//! let options = Options { points: 32, approach_step: 0.1, ..Options::default() };
+//! let cycle = Elements::new(&map, &material, &[0.01], &options)?.run()?;
 //! let largest_m2 = cycle.steps.iter().map(|step| step.area_m2).fold(0.0, f64::max);
 //! assert!(largest_m2 > 0.0 && largest_m2 < length_m * length_m && !cycle.maps.is_empty());
 //! # Ok::<(), hysteron_physics::PhysicsError>(())
@@ -62,11 +70,16 @@
 //! use hysteron_physics::EventKind;
 //! use hysteron_physics::cycle::Method;
 //!
-//! # let heights_m = Array2::from_shape_fn((16, 16), |(i, j)| 2e-7 * ((0.4 * i as f64).sin() + (0.5 * j as f64 + 1.0).sin()));
+//! # let heights_m = Array2::from_shape_fn((16, 16), |(i, j)| {
+//! #     2e-7 * ((0.4 * i as f64).sin() + (0.5 * j as f64 + 1.0).sin())
+//! # });
 //! # let (length_m, shortest_wavelength_m, rms_height_m) = (1.6e-5, 1.2e-5, 2e-7);
-//! # let map = HeightMap { heights_m: heights_m.view(), length_m, is_periodic: false, shortest_wavelength_m, rms_height_m };
-//! # let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.002, interaction_range_m: 1e-9 };
-//! let method = Elements::new(&map, &material, &[0.01], &Options { points: 32, approach_step: 0.1, ..Options::default() })?;
+//! # let heights_m = heights_m.view();
+//! # let map = HeightMap { heights_m, length_m, is_periodic: false, shortest_wavelength_m, rms_height_m };
+//! # let material =
+//! #     Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.002, interaction_range_m: 1e-9 };
+//! let options = Options { points: 32, approach_step: 0.1, ..Options::default() };
+//! let method = Elements::new(&map, &material, &[0.01], &options)?;
 //! let mut checkpoints = 0;
 //! let cycle = method.run_from(None, &mut |_| checkpoints += 1, &|at| assert!(at.done <= 1.0))?;
 //! let jumps = cycle.events.iter().filter(|event| event.kind == EventKind::JumpIn).count();

@@ -61,8 +61,9 @@ fn note(of: &Compared<'_>, labels: &[&str]) -> Markup {
         "The runs differ in " (differing) ". Reference: " (labels.first().copied().unwrap_or_default())
         ". Cases with otherwise equal parameters are compared."
         @if !left.is_empty() { " Cases without a counterpart are omitted: " (left.join(", ")) "." }
-        " Quantities are means over realizations. Parentheses: half-width of the 95 % confidence interval of the difference, surface by surface \
-         where both runs have the same surfaces, otherwise of two independent means (Welch)."
+        " Quantities are means over realizations. Parentheses: half-width of the 95 % confidence interval of \
+         the difference, surface by surface where both runs have the same surfaces, otherwise of two \
+         independent means (Welch)."
     }
 }
 

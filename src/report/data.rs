@@ -5,22 +5,29 @@ use crate::stats::{StatsError, labels_with_unit};
 use crate::store::Frame;
 use maud::{Markup, html};
 
-const DATA: &str = "All numbers of this report are in the tables of this folder. `datapackage.json` describes each column with unit and \
-    equation. `statistics/panels.parquet` holds the data of the figures. In Python, with the folder of this report as working directory:";
+const DATA: &str = "All numbers of this report are in the tables of this folder. `datapackage.json` \
+    describes each column with unit and equation. `statistics/panels.parquet` holds the data of the figures. \
+    In Python, with the folder of this report as working directory:";
 
-const PYTHON: &str = r#"import polars as pl          # or pandas: pd.read_parquet, or DuckDB: SELECT * FROM 'statistics/cases.parquet'
-cases = pl.read_parquet("statistics/cases.parquet")
-print(cases.select("case_id", "max_load", "loss_mean", "loss_ci95_low", "loss_ci95_high"))
-# All events with the parameters of their cycle. Cases that share a cycle have one row each in the table cycles: keep one of them.
-cycles = pl.scan_parquet("statistics/cycles.parquet").drop("case_id", "realization", "method").unique("cycle_id")
-events = pl.scan_parquet("cycles/*/events.parquet").join(cycles, on="cycle_id").collect()"#;
+const PYTHON: &str = concat!(
+    "import polars as pl          # or pandas: pd.read_parquet, or DuckDB: SELECT * FROM \
+     'statistics/cases.parquet'\n",
+    "cases = pl.read_parquet(\"statistics/cases.parquet\")\n",
+    "print(cases.select(\"case_id\", \"max_load\", \"loss_mean\", \"loss_ci95_low\", \"loss_ci95_high\"))\n",
+    "# All events with the parameters of their cycle. Cases that share a cycle have one row each in the \
+     table cycles: keep one of them.\n",
+    "cycles = pl.scan_parquet(\"statistics/cycles.parquet\")\
+     .drop(\"case_id\", \"realization\", \"method\").unique(\"cycle_id\")\n",
+    "events = pl.scan_parquet(\"cycles/*/events.parquet\").join(cycles, on=\"cycle_id\").collect()",
+);
 
 const R: &str = r#"cases <- read.csv("csv/cases.csv")
 plot(cases$area_at_max_load_mean, cases$loss_mean)"#;
 
-const CITATION: &str = "Model: G. Violano and L. Afferrante, “Roughness-induced adhesive hysteresis in self-affine fractal surfaces”, \
-    Lubricants 9(1):7, 2021, with corrected equations; the guide of hysteron lists the corrections. The provenance records in `receipts/` state program, \
-    commit and compiler of each file.";
+const CITATION: &str = "Model: G. Violano and L. Afferrante, “Roughness-induced adhesive hysteresis in \
+    self-affine fractal surfaces”, Lubricants 9(1):7, 2021, with corrected equations; the guide of hysteron \
+    lists the corrections. The provenance records in `receipts/` state program, commit and compiler of each \
+    file.";
 
 /// Files and folders of the run that the page links.
 const FILES: [&str; 5] = ["campaign.toml", "datapackage.json", "statistics/", "figures/", "receipts/"];
@@ -68,8 +75,8 @@ pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsE
     let mut text = unfinished(cases)?;
     if let (Some(zeta), Some(hurst)) = (range("magnification")?, range("hurst")?) {
         text += &format!(
-            "Self-affine rough surfaces with Hurst exponent H = {hurst} and magnification ζ = {zeta} were generated from their power spectrum \
-             ({} per case, seed {}). ",
+            "Self-affine rough surfaces with Hurst exponent H = {hurst} and magnification ζ = {zeta} were \
+             generated from their power spectrum ({} per case, seed {}). ",
             study.realizations_text, study.seed
         );
     }
@@ -79,8 +86,8 @@ pub(super) fn methods(cases: &Frame, study: &Study<'_>) -> Result<Markup, StatsE
     let program = concat!("hysteron ", env!("CARGO_PKG_VERSION"));
     if asperities > 0 {
         text += &format!(
-            "Loading–unloading cycles of elastically interacting JKR asperities were computed with {program} after Violano and Afferrante (2021), with \
-             corrected equations. "
+            "Loading–unloading cycles of elastically interacting JKR asperities were computed with {program} \
+             after Violano and Afferrante (2021), with corrected equations. "
         );
     }
     if elements > 0 {
@@ -137,8 +144,20 @@ pub(super) fn usage() -> Markup {
 pub(super) fn citation() -> Markup {
     html! {
         (heading("Citation"))
-        (line(&html! { p { "Computed with hysteron " (env!("CARGO_PKG_VERSION")) " (MIT OR Apache-2.0). " (prose(CITATION)) } }))
+        (line(&html! {
+            p {
+                "Computed with hysteron " (env!("CARGO_PKG_VERSION")) " (MIT OR Apache-2.0). "
+                (prose(CITATION))
+            }
+        }))
         (line(&html! { pre.copy { (BIBTEX.replace("VERSION", env!("CARGO_PKG_VERSION"))) } }))
-        (line(&html! { p { "Files: " @for (place, name) in FILES.iter().enumerate() { @if place > 0 { " · " } a href=(name) { (name) } } } }))
+        (line(&html! {
+            p {
+                "Files: "
+                @for (place, name) in FILES.iter().enumerate() {
+                    @if place > 0 { " · " } a href=(name) { (name) }
+                }
+            }
+        }))
     }
 }

@@ -39,12 +39,21 @@ pub(super) fn failures(failures: &[Failure], all: usize) -> Markup {
             p { b { (verdict) } }
             @for of in failures.iter().take(LISTED) {
                 p {
-                    @if of.count > 1 { (counted(of.count, "cycle")) ", for example " (of.example) ": " } @else { (of.example) ": " }
+                    @if of.count > 1 {
+                        (counted(of.count, "cycle")) ", for example " (of.example) ": "
+                    } @else {
+                        (of.example) ": "
+                    }
                     (plain(&of.problem)) "."
                 }
                 @if !of.help.is_empty() { p { b { "Next step: " } (prose(&of.help)) "." } }
             }
-            @if failures.len() > LISTED { p { "… and " (counted(failures.len() - LISTED, "other reason")) ": see " code { "statistics/cycles.parquet" } "." } }
+            @if failures.len() > LISTED {
+                p {
+                    "… and " (counted(failures.len() - LISTED, "other reason")) ": see "
+                    code { "statistics/cycles.parquet" } "."
+                }
+            }
             p { "Change the spec and run it again: finished cycles are kept. Without a change, a cycle fails \
                  again." }
         }

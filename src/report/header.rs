@@ -36,7 +36,9 @@ pub(super) fn facts(cases: &Frame, seed: u64, realizations: &str) -> Result<Mark
     facts.push(("seed".to_owned(), seed.to_string()));
     facts.push(("hysteron".to_owned(), env!("CARGO_PKG_VERSION").to_owned()));
     Ok(html! {
-        dl.facts { "\n" @for (name, values) in &facts { div { dt { (prose(name)) } dd { (values) } } "\n" } } "\n"
+        dl.facts {
+            "\n" @for (name, values) in &facts { div { dt { (prose(name)) } dd { (values) } } "\n" }
+        } "\n"
     })
 }
 
@@ -110,9 +112,14 @@ pub(super) fn banner(cases: &Frame, methods: &Frame) -> Result<Markup, StatsErro
     let labels: Vec<&str> = found.iter().map(|of| of.kind.label).collect();
     Ok(html! {
         div class={ "banner " (colour) } role="note" {
-            p { b { @if done.contains(&0) { "Finished rows: " } (verdict) } " " (plain(&numbers.join("; "))) @if !numbers.is_empty() { "." } }
+            p {
+                b { @if done.contains(&0) { "Finished rows: " } (verdict) } " " (plain(&numbers.join("; ")))
+                @if !numbers.is_empty() { "." }
+            }
             @for sentence in &sentences { p { (sentence) } }
-            @if !labels.is_empty() { p { "Warnings: " (labels.join(", ")) ". " a href="#model-validity" { "Model validity" } } }
+            @if !labels.is_empty() {
+                p { "Warnings: " (labels.join(", ")) ". " a href="#model-validity" { "Model validity" } }
+            }
             @if let Some(ratios) = expected_ratios(cases)? { p { (plain(&ratios)) } }
         }
         "\n"
@@ -152,6 +159,10 @@ pub(super) fn contents(body: &str) -> Markup {
     };
     let sections: Vec<(String, String)> = body.split("<h2 id=\"").skip(1).filter_map(section).collect();
     html! {
-        nav aria-label="Contents" { ul { "\n" @for (id, title) in &sections { li { a href={ "#" (id) } { (PreEscaped(title)) } } "\n" } } } "\n"
+        nav aria-label="Contents" {
+            ul {
+                "\n" @for (id, title) in &sections { li { a href={ "#" (id) } { (PreEscaped(title)) } } "\n" }
+            }
+        } "\n"
     }
 }

@@ -12,7 +12,10 @@ const KEY: &str = "hysteron-key";
 
 /// A page with the style of the report alone; it is reloaded every `reload` seconds.
 pub(super) fn styled(title: &str, reload: Option<u32>, body: &Markup) -> String {
-    let meta = html! { meta name="hysteron-page" content="progress"; @if let Some(seconds) = reload { meta http-equiv="refresh" content=(seconds); } };
+    let meta = html! {
+        meta name="hysteron-page" content="progress";
+        @if let Some(seconds) = reload { meta http-equiv="refresh" content=(seconds); }
+    };
     page(title, &meta, &html! { main { (body) } })
 }
 
@@ -138,7 +141,10 @@ pub(super) fn grid<'a>(numbers: &Numbers<'_>, panels: impl IntoIterator<Item = &
             @for Panel { stem, name, caption, svg, .. } in panels {
                 figure {
                     (PreEscaped(svg))
-                    figcaption { b { "Fig. " (number) (label(name)) "." } " " (plain(caption)) " " (numbers.links(stem)) }
+                    figcaption {
+                        b { "Fig. " (number) (label(name)) "." } " " (plain(caption)) " "
+                        (numbers.links(stem))
+                    }
                 }
                 "\n"
             }
@@ -150,17 +156,29 @@ pub(super) fn grid<'a>(numbers: &Numbers<'_>, panels: impl IntoIterator<Item = &
 /// A single wide figure with number, caption and links to its files.
 pub(super) fn figure(numbers: &Numbers<'_>, drawing: &Drawing) -> Markup {
     html! {
-        figure.map { (PreEscaped(&drawing.svg)) figcaption { b { "Fig. " (numbers.next()) "." } " " (plain(&drawing.caption)) " " (numbers.links(drawing.stem)) } } "\n"
+        figure.map {
+            (PreEscaped(&drawing.svg))
+            figcaption {
+                b { "Fig. " (numbers.next()) "." } " " (plain(&drawing.caption)) " "
+                (numbers.links(drawing.stem))
+            }
+        } "\n"
     }
 }
 
 /// Colours of the cases and dashes of the branches, for all figures of a sweep.
 pub(super) fn legend(cases: &[(String, String)]) -> Markup {
-    let dash = |dashes: &str| html! { svg viewBox="0 0 32 8" aria-hidden="true" { path d="M0 4h32" stroke-dasharray=(dashes) {} } };
+    let dash = |dashes: &str| {
+        html! {
+            svg viewBox="0 0 32 8" aria-hidden="true" { path d="M0 4h32" stroke-dasharray=(dashes) {} }
+        }
+    };
     html! {
         ul.legend {
             "\n"
-            @for (label, colour) in cases { li data-colour=(colour) { i style={ "background:" (colour) } {} (prose(label)) } "\n" }
+            @for (label, colour) in cases {
+                li data-colour=(colour) { i style={ "background:" (colour) } {} (prose(label)) } "\n"
+            }
             li { (dash("7 4")) "loading" } "\n"
             li { (dash("none")) "unloading" } "\n"
         }

@@ -82,8 +82,10 @@ pub fn live_page(run: &LiveRun) -> String {
         }
         "\n"
         p {
-            "A running process rewrites this page every 2 s, and the page reloads itself every " (RELOAD_SECONDS) " s. "
-            "Without an update for " (SILENT_SECONDS) " s, the process has ended: " code { "hysteron status " (run.dir) } " shows the state. "
+            "A running process rewrites this page every 2 s, and the page reloads itself every "
+            (RELOAD_SECONDS) " s. "
+            "Without an update for " (SILENT_SECONDS) " s, the process has ended: "
+            code { "hysteron status " (run.dir) } " shows the state. "
             "At the end of the run, " a href="report.html" { "report.html" } " has the results. Last update: "
             time #updated datetime=(run.updated) { (shown) } ", " (in_words(run.elapsed_s)) " after the start"
             @if let Some(left) = run.left_s { ", about " (in_words(left)) " before the end of the stage" }
@@ -93,7 +95,10 @@ pub fn live_page(run: &LiveRun) -> String {
         div.scroll role="region" aria-label="Table of stages" tabindex="0" { table {
             tr { th { "stage" } th { "finished" } th { "work" } }
             @for stage in &run.stages {
-                tr { td { (stage.name) } td { (stage.done) " of " (counted(stage.all, "task")) } td { (percent(stage.fraction())) } }
+                tr {
+                    td { (stage.name) } td { (stage.done) " of " (counted(stage.all, "task")) }
+                    td { (percent(stage.fraction())) }
+                }
             }
         } }
         "\n"
@@ -108,7 +113,9 @@ pub fn live_page(run: &LiveRun) -> String {
                  solid.")) } "\n"
             ul.loops { @for of in run.loops.iter().rev().take(MOST_LOOPS) { li { (drawn(of)) } } } "\n"
         }
-        script { (PreEscaped(format!("const SILENT_MS = {SILENT_SECONDS}e3;\n{}", include_str!("live.js")))) } "\n"
+        script {
+            (PreEscaped(format!("const SILENT_MS = {SILENT_SECONDS}e3;\n{}", include_str!("live.js"))))
+        } "\n"
     };
     styled(&format!("{}: state of the run", run.name), Some(RELOAD_SECONDS), &body)
 }
@@ -119,13 +126,19 @@ fn tasks(running: &[(RunningTask, String)]) -> Markup {
     html! {
         h2 { "Running tasks" } "\n"
         div.scroll role="region" aria-label="Table of running tasks" tabindex="0" { table {
-            tr { th { "task" } th { "branch" } th { "steps" } th { (plain("F/(E*A₀) (maximum)")) } th { "work" } th { "time" } th { "time left" } }
+            tr {
+                th { "task" } th { "branch" } th { "steps" } th { (plain("F/(E*A₀) (maximum)")) }
+                th { "work" } th { "time" } th { "time left" }
+            }
             @for (task, parameters) in running {
                 tr {
                     td { (task.id) @if !parameters.is_empty() { small { (plain(parameters)) } } }
                     td { (task.branch.as_deref().unwrap_or("–")) }
                     td { @if let Some(steps) = task.step_count { (steps) } @else { "–" } }
-                    td { @if let Some(load) = task.load { (number(load)) } @else { "–" } @if let Some(most) = task.max_load { " (" (number(most)) ")" } }
+                    td {
+                        @if let Some(load) = task.load { (number(load)) } @else { "–" }
+                        @if let Some(most) = task.max_load { " (" (number(most)) ")" }
+                    }
                     td { (percent(task.fraction)) }
                     td { (in_words(task.elapsed_s)) }
                     td { @if let Some(left) = task.left_s { (in_words(left)) } @else { "–" } }
@@ -167,10 +180,15 @@ fn drawn(of: &LiveLoop) -> Markup {
     };
     html! {
         figure {
-            svg.loop viewBox={ "0 0 " (SIZE.0) " " (SIZE.1) } width=(SIZE.0) height=(SIZE.1) role="img" aria-label={ "Loop of cycle " (of.id) } {
-                @if low.1 <= 0.0 && high.1 >= 0.0 { path d={ "M0 " (format!("{zero:.1}")) "H" (SIZE.0) } stroke="#999999" {} }
+            svg.loop
+                viewBox={ "0 0 " (SIZE.0) " " (SIZE.1) } width=(SIZE.0) height=(SIZE.1)
+                role="img" aria-label={ "Loop of cycle " (of.id) } {
+                @if low.1 <= 0.0 && high.1 >= 0.0 {
+                    path d={ "M0 " (format!("{zero:.1}")) "H" (SIZE.0) } stroke="#999999" {}
+                }
                 @for (k, points) in of.paths.iter().enumerate() {
-                    path d=(path(points)) fill="none" stroke="#0072b2" stroke-width="1.5" stroke-dasharray=(if k == 0 { "5 3" } else { "none" }) {}
+                    path d=(path(points)) fill="none" stroke="#0072b2" stroke-width="1.5"
+                        stroke-dasharray=(if k == 0 { "5 3" } else { "none" }) {}
                 }
             }
             figcaption { (of.id) br; "F/(E*A₀): " (number(low.1)) " to " (number(high.1)) }

@@ -21,9 +21,9 @@ pub struct MethodFigures {
     pub maps: Option<Drawing>,
 }
 
-const NOTE: &str = "Means over the surfaces that both methods have finished, and the ratio of the asperity model to \
-    boundary elements on the same surface: mean ± standard deviation. The table `statistics/methods.parquet` holds each surface and the 95 % \
-    confidence intervals.";
+const NOTE: &str = "Means over the surfaces that both methods have finished, and the ratio of the asperity \
+    model to boundary elements on the same surface: mean ± standard deviation. The table \
+    `statistics/methods.parquet` holds each surface and the 95 % confidence intervals.";
 
 /// A table of the means of both methods and their ratios; empty without cases of the same surfaces by both
 /// methods.

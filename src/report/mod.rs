@@ -94,7 +94,9 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     let body = html! {
         (results::results(&cases)?)
         (results::changes(&cases)?)
-        @if let Some(chart) = report.sensitivity { (heading("Sensitivity")) (layout::figure(&numbers, chart)) }
+        @if let Some(chart) = report.sensitivity {
+            (heading("Sensitivity")) (layout::figure(&numbers, chart))
+        }
         (methods::side_by_side(&cases, report.methods, report.method_figures, &numbers)?)
         (scans::scans(report.scans))
         @if has_results {
@@ -134,8 +136,8 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
 
 const EXPLORER_NOTE: &str = "One cycle of each case. The slider moves along the loop.";
 
-const SPOTS_NOTE: &str = " Rings mark the events of a step or of an avalanche. Contacts between stored steps follow from the events; `contacts = \"all\"` in the spec \
-    stores every step.";
+const SPOTS_NOTE: &str = " Rings mark the events of a step or of an avalanche. Contacts between stored steps \
+    follow from the events; `contacts = \"all\"` in the spec stores every step.";
 
 const MAPS_NOTE: &str = " The map is the stored one that is nearest on the loop.";
 
@@ -163,13 +165,15 @@ fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
         @if panels.is_empty() {
             p { "No cycle of this sweep has finished." } "\n"
         } @else {
-            section { (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels)) } "\n"
+            section {
+                (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels))
+            } "\n"
         }
     }
 }
 
-const SYMBOLS: &str = "E*: reduced modulus; A_{0}: nominal area; h_{rms}: root-mean-square height; Δγ: work of adhesion; Δ: mean penetration; \
-    F: normal load, positive in compression.";
+const SYMBOLS: &str = "E*: reduced modulus; A_{0}: nominal area; h_{rms}: root-mean-square height; Δγ: work \
+    of adhesion; Δ: mean penetration; F: normal load, positive in compression.";
 
 const ASPERITIES: &str = "Interacting asperities of Johnson, Kendall and Roberts (JKR) after Violano and \
      Afferrante, Lubricants 9(1):7 (2021), with corrected equations. ";
@@ -181,7 +185,8 @@ const ELEMENTS: &str = "Adhesive boundary elements: the rough surface on a grid,
 fn introduction(report: &Report<'_>) -> Markup {
     let [asperities, elements] = report.case_counts;
     html! {
-        "Adhesive hysteresis of rough surfaces: " (counted(asperities + elements, "case")) ", " (report.realizations_text) " each. "
+        "Adhesive hysteresis of rough surfaces: " (counted(asperities + elements, "case")) ", "
+        (report.realizations_text) " each. "
         @if asperities > 0 { (ASPERITIES) }
         @if elements > 0 { (ELEMENTS) }
         (prose(SYMBOLS))

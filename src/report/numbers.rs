@@ -28,7 +28,11 @@ impl Scale {
 
     /// The factor for the head of the column; empty where there is none.
     pub(super) fn head(self) -> Markup {
-        html! { @if let Some(exponent) = self.0.filter(|exponent| *exponent != 0) { " [10" sup { (minus(&exponent.to_string())) } "]" } }
+        html! {
+            @if let Some(exponent) = self.0.filter(|exponent| *exponent != 0) {
+                " [10" sup { (minus(&exponent.to_string())) } "]"
+            }
+        }
     }
 }
 

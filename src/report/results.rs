@@ -44,10 +44,12 @@ pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
 
 fn note(reference: Option<&str>) -> Markup {
     let text = format!(
-        "Means over realizations: contact area A and mean penetration Δ at load reversal, pull-off force F_{{po}} (maximum tensile \
-         load during unloading), dissipated energy Θ (area of the loop), and its estimate Θ_{{DK}} by Deng and Kesari (target spectrum). Brackets: \
-         95 % confidence interval of the mean (Student). A lower limit below 0 of a quantity that cannot be negative is replaced by 0 and marked with †. \
-         Braces: values of the single surfaces, for fewer than {FEW}. A power of ten in a column head is the unit of its numbers."
+        "Means over realizations: contact area A and mean penetration Δ at load reversal, pull-off force \
+         F_{{po}} (maximum tensile load during unloading), dissipated energy Θ (area of the loop), and its \
+         estimate Θ_{{DK}} by Deng and Kesari (target spectrum). Brackets: 95 % confidence interval of the \
+         mean (Student). A lower limit below 0 of a quantity that cannot be negative is replaced by 0 and \
+         marked with †. Braces: values of the single surfaces, for fewer than {FEW}. A power of ten in a \
+         column head is the unit of its numbers."
     );
     html! {
         (prose(&text))
@@ -91,17 +93,24 @@ fn result(
         (scaled(mean, scale))
         @match (low, high) {
             (Some(_), Some(_)) if values.len() < FEW => {
-                " " small { "{" @for (place, value) in values.iter().enumerate() { @if place > 0 { "; " } (text(*value)) } "}" }
+                " " small {
+                    "{"
+                    @for (place, value) in values.iter().enumerate() { @if place > 0 { "; " } (text(*value)) }
+                    "}"
+                }
             }
-            (Some(low), Some(high)) => { " " small { "[" @if is_cut(low) { "0†" } @else { (text(low)) } ", " (text(high)) "]" } }
+            (Some(low), Some(high)) => {
+                " " small { "[" @if is_cut(low) { "0†" } @else { (text(low)) } ", " (text(high)) "]" }
+            }
             _ => {}
         }
     })
 }
 
-const CHANGES_NOTE: &str = "Difference of the means from the reference case at the same load, as a fraction of its mean, with the \
-    half-width of the 95 % confidence interval: surface by surface where both cases have the same surfaces, otherwise of two independent means \
-    (Welch). Differences larger than their half-width are bold.";
+const CHANGES_NOTE: &str = "Difference of the means from the reference case at the same load, as a fraction \
+    of its mean, with the half-width of the 95 % confidence interval: surface by surface where both cases \
+    have the same surfaces, otherwise of two independent means (Welch). Differences larger than their \
+    half-width are bold.";
 
 /// Differences of the means of each case from those of the reference case at the same load; empty without
 /// such a case.
@@ -125,9 +134,10 @@ pub(super) fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         return Ok(Markup::default());
     }
     let head = html! { (name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
-    Ok(
-        html! { (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n" (wide("differences", &head, &rows)) },
-    )
+    Ok(html! {
+        (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n"
+        (wide("differences", &head, &rows))
+    })
 }
 
 /// A relative difference with the half-width of its interval; bold if it is larger than that.

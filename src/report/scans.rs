@@ -5,14 +5,17 @@ use crate::model::Choice;
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader};
 use maud::{Markup, html};
 
-const NOTE: &str = "Each measured surface is one realization, without a standard deviation. Area kept: fraction of the scan in the \
-    central square of side L. h_{rms} and rms slope: after levelling and S-filter. S-filter: low-pass filter, Gaussian (ISO 16610-61) or \
-    sharp. Removed: rms heights of the short wavelengths and of the form subtracted by levelling. Overshoot: height of filtered maxima above the \
-    measured heights nearby, beyond the noise. Filled: missing points interpolated (harmonic in-fill). Outliers: isolated points beyond 6 robust \
-    standard deviations of their neighbours, replaced and left. Line offsets: rms offset between scan lines, removed and left. Tip cut-off: \
-    shortest wavelength that a tip of the stated radius traces reliably. H: Hurst exponent of the self-affine fit, with its \
-    rms deviation in decades; outside 0 to 1 the spectrum is not self-affine. \
-    Texture aspect: larger of the ratio of the principal rms slopes and 1/Str (ISO 25178). Cuts: wavelengths between which the spectrum holds data.";
+const NOTE: &str = "Each measured surface is one realization, without a standard deviation. Area kept: \
+    fraction of the scan in the central square of side L. h_{rms} and rms slope: after levelling and \
+    S-filter. S-filter: low-pass filter, Gaussian (ISO 16610-61) or sharp. Removed: rms heights of the short \
+    wavelengths and of the form subtracted by levelling. Overshoot: height of filtered maxima above the \
+    measured heights nearby, beyond the noise. Filled: missing points interpolated (harmonic in-fill). \
+    Outliers: isolated points beyond 6 robust standard deviations of their neighbours, replaced and left. \
+    Line offsets: rms offset between scan lines, removed and left. Tip cut-off: shortest wavelength that a \
+    tip of the stated radius traces reliably. H: Hurst exponent of the self-affine fit, with its rms \
+    deviation in decades; outside 0 to 1 the spectrum is not self-affine. Texture aspect: larger of the \
+    ratio of the principal rms slopes and 1/Str (ISO 25178). Cuts: wavelengths between which the spectrum \
+    holds data.";
 
 const HEADS: [&str; 18] = [
     "file",
@@ -51,7 +54,10 @@ fn artefacts(of: &Measured) -> Markup {
     let Some(quality) = of.quality else { return html! { td { "–" } td { "–" } td { "–" } } };
     html! {
         td { (quality.outlier_count) " / " (quality.outlier_left_count) }
-        td { (length(quality.line_offset_m)) " / " (length(Some(quality.line_jump_m).filter(|jump| *jump > 0.0))) }
+        td {
+            (length(quality.line_offset_m)) " / "
+            (length(Some(quality.line_jump_m).filter(|jump| *jump > 0.0)))
+        }
         td { (length(quality.tip_cutoff_m)) }
     }
 }
@@ -70,7 +76,12 @@ fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
         td { (of.missing_count) }
         (artefacts(of))
         td { (of.texture.map_or_else(|| "–".to_owned(), |texture| format!("{:.2}", texture.aspect()))) }
-        td { (of.fit.map_or_else(|| "–".to_owned(), |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter))) }
+        td {
+            (of.fit.map_or_else(
+                || "–".to_owned(),
+                |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter),
+            ))
+        }
         td { (of.fit.map_or_else(|| "–".to_owned(), |fit| ends(&fit, header.length_m))) }
     }
 }

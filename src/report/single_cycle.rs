@@ -29,7 +29,8 @@ pub(super) fn section(numbers: &Numbers<'_>, cycles: &[SingleCycle]) -> Markup {
         (heading("Single cycle"))
         @for cycle in cycles {
             p {
-                (prose(&cycle.choice)) ": " (plain(&cycle.parameters)) ". Cycle " (cycle.id) ", realization " (cycle.realization)
+                (prose(&cycle.choice)) ": " (plain(&cycle.parameters)) ". Cycle " (cycle.id) ", realization "
+                (cycle.realization)
                 ". " (prose(cycle.files))
             }
             "\n"

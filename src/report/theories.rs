@@ -52,7 +52,9 @@ pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     for (heading, column) in COLUMNS.into_iter().filter(|(_, column)| has_spots || *column != OF_SPOTS) {
         columns.push((heading, column, cases.scale(column)?));
     }
-    let head = html! { (name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } } };
+    let head = html! {
+        (name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } }
+    };
     let row = |listed: &Listed| -> Result<Markup, StatsError> {
         let mut cells = Vec::new();
         for (_, column, scale) in &columns {
@@ -64,7 +66,12 @@ pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     Ok(html! {
         (heading("Comparison with analytical models"))
         p { (prose(NOTE)) } "\n"
-        ul { "\n" @for model in MODELS.iter().filter(|model| has_spots || !model.starts_with("Σθ")) { li { (prose(model)) } "\n" } } "\n"
+        ul {
+            "\n"
+            @for model in MODELS.iter().filter(|model| has_spots || !model.starts_with("Σθ")) {
+                li { (prose(model)) } "\n"
+            }
+        } "\n"
         (wide("models", &head, &rows))
     })
 }

@@ -48,9 +48,10 @@ const VALIDITY: [(&str, &str, Option<&str>, Shown); 10] = [
     ),
 ];
 
-const BUDGET_NOTE: &str = "Θ is the area of the loop. The energies of all events sum to the same value if the energy balance is exact; the \
-    energy-balance error is the difference over Θ. Both are over E*A_{0}h_{rms}. The percentages are fractions of the sum over events: by \
-    branch, and by the kind of event that triggers each relaxation.";
+const BUDGET_NOTE: &str = "Θ is the area of the loop. The energies of all events sum to the same value if \
+    the energy balance is exact; the energy-balance error is the difference over Θ. Both are over \
+    E*A_{0}h_{rms}. The percentages are fractions of the sum over events: by branch, and by the kind of \
+    event that triggers each relaxation.";
 
 const ABSORPTION_NOTE: &str =
     " Absorption and release have no potential, so their fractions may be negative.";
@@ -77,9 +78,11 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     };
     let rows =
         cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
-    Ok(
-        html! { (heading("Energy budget")) p { (prose(BUDGET_NOTE)) @if cases.has_spots()? { (ABSORPTION_NOTE) } } "\n" (wide("energy", &head, &rows)) },
-    )
+    Ok(html! {
+        (heading("Energy budget"))
+        p { (prose(BUDGET_NOTE)) @if cases.has_spots()? { (ABSORPTION_NOTE) } } "\n"
+        (wide("energy", &head, &rows))
+    })
 }
 
 fn budget_row(cases: &Cases<'_>, listed: &Listed, kinds: &[EventKind]) -> Result<Markup, StatsError> {
@@ -114,11 +117,12 @@ const OF_SPOTS: [&str; 5] = [
     "covered_share_mean",
 ];
 
-const RANGE_NOTE: &str = "An asperity model is outside its range where contacts coalesce: it then underestimates the contact area \
-    of a boundary-element solution by a third, even without adhesion.";
+const RANGE_NOTE: &str = "An asperity model is outside its range where contacts coalesce: it then \
+    underestimates the contact area of a boundary-element solution by a third, even without adhesion.";
 
 const VALIDITY_NOTE: &str = "Numbers beyond their limit are bold. U_{el} is the elastic energy per area \
-    that flattens the roughness, Δγ the work of adhesion: for the realised spectrum of the surfaces, and in brackets for the target spectrum.";
+    that flattens the roughness, Δγ the work of adhesion: for the realised spectrum of the surfaces, and in \
+    brackets for the target spectrum.";
 
 /// The indicators of model validity with their limits, and the warnings.
 pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
@@ -167,7 +171,12 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         } @else {
             div.scroll role="region" aria-label="Table of warnings" tabindex="0" { table {
                 "\n"
-                thead { tr { th { "warning (code)" } th { "measured" } th { "consequence and action" } th { "cases, at " (prose(LOAD)) } } } "\n"
+                thead {
+                    tr {
+                        th { "warning (code)" } th { "measured" } th { "consequence and action" }
+                        th { "cases, at " (prose(LOAD)) }
+                    }
+                } "\n"
                 tbody {
                 @for Warning { kind, measured, rows } in &found {
                     tr {
@@ -202,7 +211,9 @@ fn places(cases: &Cases<'_>, rows: &[usize]) -> Markup {
         }
     }
     let list = html! {
-        @for (place, (label, loads)) in groups.iter().enumerate() { @if place > 0 { br; } (label) " at " (loads.join(", ")) }
+        @for (place, (label, loads)) in groups.iter().enumerate() {
+            @if place > 0 { br; } (label) " at " (loads.join(", "))
+        }
     };
     html! {
         @if groups.len() > MOST_PLACES {

@@ -8,8 +8,9 @@ pub static COMPARISON: Table = Table {
     name: "comparison",
     version: 1,
     file: "comparison.parquet",
-    doc: "One row per quantity and pair of cases with equal parameters, except those in which the runs differ; the first run is the reference. \
-          The parameters are those of the compared case; rows are in the order of the parameters.",
+    doc: "One row per quantity and pair of cases with equal parameters, except those in which the runs \
+          differ; the first run is the reference. The parameters are those of the compared case; rows are in \
+          the order of the parameters.",
     columns: COLUMNS,
 };
 

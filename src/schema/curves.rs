@@ -8,8 +8,9 @@ pub static CURVES: Table = Table {
     name: "curves",
     version: 1,
     file: "statistics/curves.parquet",
-    doc: "One row per case, branch and station, averaged over realizations. From the load reversal to zero load the stations are loads common to all \
-          realizations; below zero load they are equal fractions of the maximum tensile load of each realization on the branch.",
+    doc: "One row per case, branch and station, averaged over realizations. From the load reversal to zero \
+          load the stations are loads common to all realizations; below zero load they are equal fractions \
+          of the maximum tensile load of each realization on the branch.",
     columns: &[
         CASE[0],
         CASE[1],

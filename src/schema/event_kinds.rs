@@ -57,11 +57,14 @@ same contacts; regions grown or shrunk of boundary elements",
 pub(super) use event_kinds;
 
 macro_rules! counts {
-    ($($word:literal, $remark:literal, $colour:literal, $step:literal, $avalanche:literal, $realization:literal;)+) => {
+    ($($word:literal, $remark:literal, $colour:literal, $step:literal, $avalanche:literal,
+        $realization:literal;)+) => {
         /// Words of the colours of the kinds in the loop explorer.
         pub const EVENT_COLOURS: [&str; EventKind::ALL.len()] = [$($colour),+];
-        pub(super) const OF_STEPS: [Column; EventKind::ALL.len()] = [$(count(concat!($word, "_count"), $step)),+];
-        pub(super) const OF_AVALANCHES: [Column; EventKind::ALL.len()] = [$(count(concat!($word, "_count"), $avalanche)),+];
+        pub(super) const OF_STEPS: [Column; EventKind::ALL.len()] =
+            [$(count(concat!($word, "_count"), $step)),+];
+        pub(super) const OF_AVALANCHES: [Column; EventKind::ALL.len()] =
+            [$(count(concat!($word, "_count"), $avalanche)),+];
         pub(super) const KINDS_DOC: &str = concat!(
             "Kind of event: ",
             $("\"", $word, "\"", $remark, ", ",)+

@@ -1,9 +1,8 @@
 //! `method = "auto"`: the choice between the methods, and its record in a resolved spec.
 //!
 //! A case with a generated surface is chosen from the target spectrum when the spec is read. One with a
-//! measured surface needs the scan, which
-//! [`super::Spec::read_choosing`] gives. Where all cases have one choice, the resolved spec has its word in place of `auto`;
-//! else it lists the choices.
+//! measured surface needs the scan, which [`super::Spec::read_choosing`] gives. Where all cases have one
+//! choice, the resolved spec has its word in place of `auto`; else it lists the choices.
 
 use std::ops::Range;
 

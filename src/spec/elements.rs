@@ -133,8 +133,8 @@ impl ElementOptions {
         if mesh > MOST_MESH_NUMBER {
             return Some((
                 format!(
-                    "the mesh number sqrt(Δγ dx/E*)/(2ρ) is {mesh:.2}, above {MOST_MESH_NUMBER}: the grid traps contact edges \
-                     (ρ = {} m, dx = {} m)",
+                    "the mesh number sqrt(Δγ dx/E*)/(2ρ) is {mesh:.2}, above {MOST_MESH_NUMBER}: the grid \
+                     traps contact edges (ρ = {} m, dx = {} m)",
                     short(range),
                     short(spacing)
                 ),

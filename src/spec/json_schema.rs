@@ -62,18 +62,29 @@ pub fn json_schema() -> String {
     let name = |meaning: &str| json!({ "type": "string", "pattern": NAME, "description": meaning });
     in_sweep.insert("name", name("Name of the sweep, unique in the spec."));
     properties.insert("name", name("Name of the run and of its default output directory."));
-    let seed = json!({ "type": "integer", "minimum": 0, "maximum": i64::MAX, "default": DEFAULT_SEED, "description": "Seed of all generated surfaces." });
+    let seed = json!({
+        "type": "integer", "minimum": 0, "maximum": i64::MAX, "default": DEFAULT_SEED,
+        "description": "Seed of all generated surfaces.",
+    });
     properties.insert("seed", seed);
     properties.insert("realizations", realizations());
     properties.insert("figures", figures());
-    let sweep = json!({ "type": "object", "required": ["name"], "additionalProperties": false, "properties": in_sweep });
+    let sweep = json!({
+        "type": "object", "required": ["name"], "additionalProperties": false, "properties": in_sweep,
+    });
     properties.insert(
         "sweep",
         json!({ "type": "array", "items": sweep, "description": "Each sweep overrides keys; arrays in one \
              sweep multiply." }),
     );
     let files = json!({ "type": "string", "pattern": DIGEST });
-    properties.insert("files", json!({ "type": "object", "additionalProperties": files, "description": "BLAKE3 checksums of measured files; written by the program." }));
+    properties.insert(
+        "files",
+        json!({
+            "type": "object", "additionalProperties": files,
+            "description": "BLAKE3 checksums of measured files; written by the program.",
+        }),
+    );
     let chosen = json!({ "type": "string", "enum": METHODS });
     properties.insert(
         "auto_methods",
@@ -115,7 +126,10 @@ fn definition(key: &Key) -> Value {
     let mut schema = match &key.kind {
         Kind::Number(limits) => number(limits),
         Kind::Numbers(limits, most) => {
-            json!({ "type": "array", "items": number(limits), "minItems": 1, "maxItems": most, "uniqueItems": true })
+            json!({
+                "type": "array", "items": number(limits), "minItems": 1, "maxItems": most,
+                "uniqueItems": true,
+            })
         }
         Kind::Count { low, high, .. } => json!({ "type": "integer", "minimum": low, "maximum": high }),
         Kind::Flag => json!({ "type": "boolean" }),
@@ -124,7 +138,10 @@ fn definition(key: &Key) -> Value {
             json!({ "type": "array", "items": { "type": "string", "enum": words(choice) } })
         }
         Kind::Text(most, _) => {
-            json!({ "type": "string", "minLength": i32::from(key.path == "surface.file"), "maxLength": most, "pattern": PLAIN })
+            json!({
+                "type": "string", "minLength": i32::from(key.path == "surface.file"), "maxLength": most,
+                "pattern": PLAIN,
+            })
         }
         Kind::Length(_) => json!({ "type": "string", "maxLength": 16, "pattern": LENGTH_PATTERN }),
     };
@@ -157,9 +174,19 @@ fn figures() -> Value {
         "type": "object",
         "additionalProperties": false,
         "properties": {
-            "format": { "anyOf": [format, { "type": "array", "items": format, "minItems": 1 }], "default": default.format, "description": "File formats of the figures." },
-            "width_mm": { "type": "number", "minimum": WIDTH.low, "maximum": WIDTH.high, "default": default.width_mm, "description": "Width of a panel in PNG and PDF files [mm]." },
-            "font": { "type": "string", "pattern": PLAIN, "minLength": 1, "maxLength": LONGEST_FONT, "default": default.font, "description": "Font family of the SVG files; PNG and PDF files have DejaVu Sans." },
+            "format": {
+                "anyOf": [format, { "type": "array", "items": format, "minItems": 1 }],
+                "default": default.format, "description": "File formats of the figures.",
+            },
+            "width_mm": {
+                "type": "number", "minimum": WIDTH.low, "maximum": WIDTH.high, "default": default.width_mm,
+                "description": "Width of a panel in PNG and PDF files [mm].",
+            },
+            "font": {
+                "type": "string", "pattern": PLAIN, "minLength": 1, "maxLength": LONGEST_FONT,
+                "default": default.font,
+                "description": "Font family of the SVG files; PNG and PDF files have DejaVu Sans.",
+            },
         },
         "description": "Files of the figures.",
     })
@@ -167,7 +194,11 @@ fn figures() -> Value {
 
 fn realizations() -> Value {
     let goals: Vec<&str> = Goal::WORDS.iter().map(|(word, _)| *word).collect();
-    let count = |least: u32, default: u32| json!({ "type": "integer", "minimum": least, "maximum": MAX_REALIZATIONS, "default": default });
+    let count = |least: u32, default: u32| {
+        json!({
+            "type": "integer", "minimum": least, "maximum": MAX_REALIZATIONS, "default": default,
+        })
+    };
     let until = json!({
         "type": "object",
         "required": ["until_relative_ci"],

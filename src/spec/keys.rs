@@ -95,31 +95,41 @@ pub(super) fn words(choice: &[(&'static str, &'static str)]) -> Vec<&'static str
 }
 
 macro_rules! key {
-    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal; number $limits:expr) => {
+    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal;
+        number $limits:expr) => {
         key!($table.$name in $($place).+, $symbol, $meaning;
             Kind::Number($limits), |x: &f64| Value::Number(*x), Number(x) => Some(*x))
     };
-    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal; optional number $limits:expr) => {
+    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal;
+        optional number $limits:expr) => {
         key!($table.$name in $($place).+, $symbol, $meaning; Kind::Number($limits),
-            |x: &Option<f64>| Value::Number(x.unwrap_or_default()), Number(x) => Some(Some(*x).filter(|x| *x > 0.0)))
+            |x: &Option<f64>| Value::Number(x.unwrap_or_default()),
+            Number(x) => Some(Some(*x).filter(|x| *x > 0.0)))
     };
-    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal; count $low:literal to $high:literal, $why:expr, $note:expr) => {
-        key!($table.$name in $($place).+, $symbol, $meaning; Kind::Count { low: $low, high: $high, why: $why, note: $note },
+    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal;
+        count $low:literal to $high:literal, $why:expr, $note:expr) => {
+        key!($table.$name in $($place).+, $symbol, $meaning;
+            Kind::Count { low: $low, high: $high, why: $why, note: $note },
             |n: &u32| Value::Count(*n), Count(n) => Some(*n))
     };
-    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal; optional count to $high:literal, $note:expr) => {
-        key!($table.$name in $($place).+, $symbol, $meaning; Kind::Count { low: 0, high: $high, why: &[], note: $note },
-            |n: &Option<u32>| Value::Count(n.unwrap_or_default()), Count(n) => Some(Some(*n).filter(|n| *n > 0)))
+    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal;
+        optional count to $high:literal, $note:expr) => {
+        key!($table.$name in $($place).+, $symbol, $meaning;
+            Kind::Count { low: 0, high: $high, why: &[], note: $note },
+            |n: &Option<u32>| Value::Count(n.unwrap_or_default()),
+            Count(n) => Some(Some(*n).filter(|n| *n > 0)))
     };
     ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal; word $choice:ty) => {
         key!($table.$name in $($place).+, $symbol, $meaning; Kind::Word(<$choice>::MEANINGS),
             |w: &$choice| Value::Word(w.word()), Word(w) => <$choice>::from_word(w))
     };
-    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal; text $most:literal, $note:literal) => {
+    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal;
+        text $most:literal, $note:literal) => {
         key!($table.$name in $($place).+, $symbol, $meaning; Kind::Text($most, $note),
             |text: &String| Value::Text(text.clone()), Text(text) => Some(text.clone()))
     };
-    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal; length $note:literal) => {
+    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal;
+        length $note:literal) => {
         key!($table.$name in $($place).+, $symbol, $meaning; Kind::Length($note),
             |text: &String| Value::Text(text.clone()), Text(text) => Some(text.clone()))
     };
@@ -127,7 +137,8 @@ macro_rules! key {
         key!($table.$name in $($place).+, $symbol, $meaning;
             Kind::Flag, |flag: &bool| Value::Flag(*flag), Flag(flag) => Some(*flag))
     };
-    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal; $kind:expr, $get:expr, $variant:ident($bound:ident) => $value:expr) => {
+    ($table:ident.$name:ident in $($place:ident).+, $symbol:literal, $meaning:literal;
+        $kind:expr, $get:expr, $variant:ident($bound:ident) => $value:expr) => {
         Key {
             path: concat!(stringify!($table), ".", stringify!($name)),
             table: stringify!($table),
@@ -154,11 +165,13 @@ macro_rules! key {
 /// Every key of every table, in the order in which they are shown.
 pub(super) static KEYS: &[Key] = &[
     key!(surface.length_m in generated.length_m, "L", "Side of the nominal square."; number Limits {
-        low: 1e-9, above: false, high: 1.0, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")), note: "",
+        low: 1e-9, above: false, high: 1.0, unit: " m", unit_name: "metres",
+        slip: Some((1e-6, "micrometres")), note: "",
     }),
     key!(surface.rms_height_m in generated.rms_height_m, "h_rms", "Root-mean-square (rms) height of a \
          generated surface."; number Limits {
-        low: 1e-12, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")), note: "",
+        low: 1e-12, above: false, high: 0.1, unit: " m", unit_name: "metres",
+        slip: Some((1e-6, "micrometres")), note: "",
     }),
     key!(surface.hurst in generated.hurst, "H", "Hurst exponent of the self-affine power spectral density \
          C(q) ∝ q^(−2(H+1))."; number Limits {
@@ -168,40 +181,51 @@ pub(super) static KEYS: &[Key] = &[
     key!(surface.magnification in generated.magnification, "ζ", "Magnification: longest over shortest \
          wavelength of the roughness."; count 2 to 16384, &[],
         "ζ, magnification: longest over shortest wavelength of the roughness, 2 <= ζ <= 16384; default 128"),
-    key!(surface.points_per_shortest_wavelength in generated.points_per_shortest_wavelength, "", "Grid points per shortest wavelength: ζ times as many along a side. For a measured surface, low-pass (S-filter) cut-off wavelength in pixels."; count 4 to 64, &[
+    key!(surface.points_per_shortest_wavelength in generated.points_per_shortest_wavelength, "", "Grid \
+         points per shortest wavelength: ζ times as many along a side. For a measured surface, low-pass \
+         (S-filter) cut-off wavelength in pixels."; count 4 to 64, &[
         (1, "1 point is below the Nyquist limit: the grid does not resolve the shortest wavelength"),
         (3, "2 or 3 points resolve the heights at the shortest wavelength; the derivatives at summits need \
              at least 4"),
     ], "default 8"),
-    key!(surface.normalization in generated.normalization, "", "Definition of the rms height."; word Normalization),
-    key!(surface.amplitudes in generated.amplitudes, "", "Amplitudes of the Fourier components."; word Amplitudes),
+    key!(surface.normalization in generated.normalization, "", "Definition of the rms height.";
+        word Normalization),
+    key!(surface.amplitudes in generated.amplitudes, "", "Amplitudes of the Fourier components.";
+        word Amplitudes),
     key!(surface.file in measured.file, "", "File of a measured surface. With this key, the surface is \
-         imported and not generated."; text 4096, "the file of a measured surface, from the working directory or the folder of the spec"),
+         imported and not generated.";
+        text 4096, "the file of a measured surface, from the working directory or the folder of the spec"),
     key!(surface.dataset in measured.dataset, "", "Field of the file, if it has several: a dataset of HDF5, \
          a variable of NetCDF."; text 256, "a dataset of the file"),
     key!(surface.periodic in measured.periodic, "", "True if the measured surface is periodic."; flag),
-    key!(surface.pixel_m in measured.pixel_m, "", "Pixel size of the measured surface. 0: the file states it."; number Limits {
+    key!(surface.pixel_m in measured.pixel_m, "", "Pixel size of the measured surface. 0: the file \
+         states it."; number Limits {
         low: 0.0, above: false, high: 0.1, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
         note: "pixel size; 0 if the file contains it",
     }),
     key!(surface.size_m in measured.size_m, "", "Size of the measured scan along x, instead of `pixel_m`. 0: \
          the file states it."; number Limits {
-        low: 0.0, above: false, high: 100.0, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
+        low: 0.0, above: false, high: 100.0, unit: " m", unit_name: "metres",
+        slip: Some((1e-6, "micrometres")),
         note: "size of the scan along x; 0 if the file contains it",
     }),
     key!(surface.size_y_m in measured.size_y_m, "", "Size of the measured scan along y, with `size_m`. 0: \
          square pixels."; number Limits {
-        low: 0.0, above: false, high: 100.0, unit: " m", unit_name: "metres", slip: Some((1e-6, "micrometres")),
+        low: 0.0, above: false, high: 100.0, unit: " m", unit_name: "metres",
+        slip: Some((1e-6, "micrometres")),
         note: "size of the scan along y; 0 for square pixels",
     }),
-    key!(surface.unit in measured.unit, "", "Unit of the measured heights. Empty: the file states it."; length "the unit of the heights, for example \"nm\""),
-    key!(surface.skip_lines in measured.skip_lines, "", "Lines at the beginning of a text that are skipped."; count 0 to 1000000, &[], "lines to skip; default 0"),
+    key!(surface.unit in measured.unit, "", "Unit of the measured heights. Empty: the file states it.";
+        length "the unit of the heights, for example \"nm\""),
+    key!(surface.skip_lines in measured.skip_lines, "", "Lines at the beginning of a text that are skipped.";
+        count 0 to 1000000, &[], "lines to skip; default 0"),
     key!(surface.width in measured.width, "", "Points per scan line of a text with one column. 0: the lines \
          of the text are scan lines."; count 0 to 1000000, &[],
         "points per scan line; 0 if the lines of the text are scan lines"),
     key!(surface.transpose in measured.transpose, "", "If true, x and y of the measured surface are \
          exchanged."; flag),
-    key!(surface.missing in measured.missing, "", "Treatment of missing points of a measured surface."; word Missing),
+    key!(surface.missing in measured.missing, "", "Treatment of missing points of a measured surface.";
+        word Missing),
     key!(surface.detrend in measured.detrend, "", "Form removed from a measured surface (levelling, \
          F-operator). The default of a periodic surface is `mean`."; word Detrend),
     key!(surface.filter in measured.filter, "", "Low-pass filter (S-filter) of a measured surface. Its \
@@ -211,15 +235,18 @@ pub(super) static KEYS: &[Key] = &[
          deviations of their neighbours. If false, they cause a warning."; flag),
     key!(surface.align_rows in measured.align_rows, "", "If true, the offsets of scan lines of a measured \
          surface are removed (median of differences). If false, offsets cause a warning."; flag),
-    key!(surface.fast_axis in measured.fast_axis, "", "Direction of the scan lines, with `align_rows = true`."; word FastAxis),
+    key!(surface.fast_axis in measured.fast_axis, "", "Direction of the scan lines, with `align_rows = \
+         true`."; word FastAxis),
     key!(surface.tip_radius_m in measured.tip_radius_m, "R_tip", "Radius of the tip that measured the \
-         surface. Wavelengths below its reliability cut-off are removed. 0: no tip, or unknown."; number Limits {
+         surface. Wavelengths below its reliability cut-off are removed. 0: no tip, or \
+         unknown."; number Limits {
         low: 0.0, above: false, high: 1e-2, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")),
         note: "R_tip, tip radius; 0 if there is no tip, or its radius is unknown",
     }),
     key!(material.contact_modulus_pa in material.contact_modulus_pa, "E*", "Reduced modulus: `1/E* = (1 − \
          ν1²)/E1 + (1 − ν2²)/E2`; `E/(1 − ν²)` against a rigid surface."; number Limits {
-        low: 1.0, above: false, high: 1e13, unit: " Pa", unit_name: "pascals", slip: Some((1e6, "megapascals")), note: "",
+        low: 1.0, above: false, high: 1e13, unit: " Pa", unit_name: "pascals",
+        slip: Some((1e6, "megapascals")), note: "",
     }),
     key!(material.work_of_adhesion_j_m2 in material.work_of_adhesion_j_m2, "Δγ", "Work of adhesion. 0: \
          Hertzian asperities without dissipation."; number Limits {
@@ -230,14 +257,18 @@ pub(super) static KEYS: &[Key] = &[
     key!(material.interaction_range_m in material.interaction_range_m, "ε", "Range of adhesion. It enters \
          the Tabor parameter, the jump-in criterion of Wu and, with `opening = \"strength\"`, the strength \
          inside contacts of boundary elements."; number Limits {
-        low: 1e-12, above: false, high: 1e-5, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")), note: "",
+        low: 1e-12, above: false, high: 1e-5, unit: " m", unit_name: "metres",
+        slip: Some((1e-9, "nanometres")), note: "",
     }),
     key!(model.method in method, "", "Method of the cycle. Boundary elements read none of the other keys of \
          this table, and refuse `boundary = \"isolated\"` for periodic surfaces."; word Method),
-    key!(model.interaction in asperities.interaction, "", "Elastic interaction between contact spots."; word Interaction),
+    key!(model.interaction in asperities.interaction, "", "Elastic interaction between contact spots.";
+        word Interaction),
     key!(model.boundary in asperities.boundary, "", "Surroundings of the nominal square."; word Boundary),
-    key!(model.coalescence in asperities.coalescence, "", "Rule for contact spots that grow together."; word Coalescence),
-    key!(model.jump_in in asperities.jump_in, "", "Criterion for the jump of a free asperity into contact."; word JumpIn),
+    key!(model.coalescence in asperities.coalescence, "", "Rule for contact spots that grow together.";
+        word Coalescence),
+    key!(model.jump_in in asperities.jump_in, "", "Criterion for the jump of a free asperity into contact.";
+        word JumpIn),
     key!(model.as_printed in as_printed, "", "Errata of the paper that are restored: equations used as \
          printed."; Kind::Words(Slip::MEANINGS),
         |slips: &Vec<Slip>| Value::Words(slips.iter().map(|slip| slip.word()).collect()),
@@ -247,7 +278,8 @@ pub(super) static KEYS: &[Key] = &[
     key!(boundary_elements.points in elements.points, "", "Grid points along a side. 0: the smallest power \
          of two with 16 points per shortest wavelength, at most 4096."; optional count to 4096,
         "grid points along a side; 0 for 16 points per shortest wavelength; at most 4096"),
-    key!(boundary_elements.attraction in attraction, "", "Attraction between the surfaces."; word AttractionKind),
+    key!(boundary_elements.attraction in attraction, "", "Attraction between the surfaces.";
+        word AttractionKind),
     key!(boundary_elements.range_m in range_m, "ρ", "Range of the Morse law with `attraction = \"range\"`. \
          0: 0.8 sqrt(Δγ dx/E*) at the grid spacing dx."; optional number Limits {
         low: 0.0, above: false, high: 1e-3, unit: " m", unit_name: "metres", slip: Some((1e-9, "nanometres")),
@@ -255,7 +287,8 @@ pub(super) static KEYS: &[Key] = &[
     }),
     key!(boundary_elements.nucleation in nucleation, "", "Gap at which a point comes into contact, with \
          `attraction = \"bonded\"`."; word Nucleation),
-    key!(boundary_elements.opening in opening, "", "Where contact opens, with `attraction = \"bonded\"`."; word Opening),
+    key!(boundary_elements.opening in opening, "", "Where contact opens, with `attraction = \"bonded\"`.";
+        word Opening),
     key!(boundary_elements.approach_step in elements.approach_step, "", "Step of the mean penetration, as a \
          fraction of h_rms. A sixth of it where adhesion is weak (U_el > 15 Δγ), a thirtieth at U_el > 150 \
          Δγ. Steps in which an event leaves its energy uncertain are halved, see `halvings`."; number Limits {

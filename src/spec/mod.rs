@@ -275,8 +275,8 @@ impl Spec {
         })
     }
 
-    /// Reads a spec from a file as [`Self::read_with`]. The chooser reads the scan of a case with `method =
-    /// "auto"`.
+    /// Reads a spec from a file as [`Self::read_with`]. The chooser reads the scan of a case with
+    /// `method = "auto"`.
     ///
     /// # Errors
     /// As [`Self::read_with`], and errors of the chooser.

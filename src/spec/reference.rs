@@ -109,8 +109,10 @@ fn top() -> String {
     );
     text + &goals
         + "- `realizations.min`, `realizations.max`: Minimum and maximum number of realizations.\n\
-           - `figures.format`: File formats of the figures. PNG and PDF need a build with\n  `--features raster`.\n\
-           - `figures.width_mm`: Width in millimetres of a panel in PNG and PDF files. Labels next to a\n  panel add to it.\n\
+           - `figures.format`: File formats of the figures. PNG and PDF need a build with\n  \
+           `--features raster`.\n\
+           - `figures.width_mm`: Width in millimetres of a panel in PNG and PDF files. Labels next to a\n  \
+           panel add to it.\n\
            - `figures.font`: Font family of the SVG files. PNG and PDF files have DejaVu Sans.\n"
 }
 

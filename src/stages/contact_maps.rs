@@ -54,8 +54,8 @@ pub(super) fn contact_maps(
     };
     let params = &campaign.cases[asperities.case].case.params;
     let caption = format!(
-        "Contact of surface {} at F_max/(E*A₀) = {}. Left: contact spots of the asperity model. Right: grid points of boundary elements. Table realizations: \
-         area_at_max_load; maps.h5: pressure_pa.",
+        "Contact of surface {} at F_max/(E*A₀) = {}. Left: contact spots of the asperity model. Right: grid \
+         points of boundary elements. Table realizations: area_at_max_load; maps.h5: pressure_pa.",
         surfaces[row],
         significant(loads[row], 4)
     );

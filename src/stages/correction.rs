@@ -80,8 +80,9 @@ fn with_tip(
     };
     if cutoff_m > LARGEST_CUTOFF * prepared.length_m {
         let why = format!(
-            "a tip of radius {radius_m:.3e} m measures wavelengths above {cutoff_m:.3e} m only: shorter ones have a rms curvature of 1/R or more, \
-             and the square has a side of {:.3e} m\nhelp: use a sharper tip or a larger scan; check tip_radius_m (--tip-radius)",
+            "a tip of radius {radius_m:.3e} m measures wavelengths above {cutoff_m:.3e} m only: shorter ones \
+             have a rms curvature of 1/R or more, and the square has a side of {:.3e} m\n\
+             help: use a sharper tip or a larger scan; check tip_radius_m (--tip-radius)",
             prepared.length_m
         );
         return Err(refused(path, &why));

@@ -47,19 +47,21 @@ pub(super) fn files(campaign: &Campaign, done: &[bool]) -> Described {
         "generator": "hysteron",
         "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
         "name": campaign.spec.name.to_lowercase(),
-        "description": "Adhesive hysteresis of rough surfaces: loading and unloading of self-affine surfaces with interacting JKR asperities. \
-                        The spec is campaign.toml; what made each file is in receipts/.",
+        "description": "Adhesive hysteresis of rough surfaces: loading and unloading of self-affine surfaces \
+                        with interacting JKR asperities. The spec is campaign.toml; what made each file is \
+                        in receipts/.",
         "resources": resources,
     });
     files.push(("datapackage.json".to_owned(), format!("{package:#}\n")));
     files
 }
 
-const SURFACE: &str = "Height field: the dataset /height_m (f64, N x N, rows along x) with its coordinates /x_m and /y_m; parameters of the \
-                       surface as attributes.";
-const MAPS: &str = "Maps of boundary elements: a group for each load reversal, maximum tensile load and some steps between them, with the datasets \
-                    gap_m and pressure_pa (f32, rows along x), and step, branch, max_load, approach_m and load_n as attributes; \
-                    contact_gap_m of the file is the gap below which a bonded point is in contact.";
+const SURFACE: &str = "Height field: the dataset /height_m (f64, N x N, rows along x) with its coordinates \
+                       /x_m and /y_m; parameters of the surface as attributes.";
+const MAPS: &str = "Maps of boundary elements: a group for each load reversal, maximum tensile load and some \
+                    steps between them, with the datasets gap_m and pressure_pa (f32, rows along x), and \
+                    step, branch, max_load, approach_m and load_n as attributes; contact_gap_m of the file \
+                    is the gap below which a bonded point is in contact.";
 
 /// Ids of the surfaces and of the finished cycles.
 struct Ids<'a> {

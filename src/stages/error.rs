@@ -85,8 +85,10 @@ pub enum StageError {
     },
     /// Steps that would fill the memory.
     #[error(
-        "cycle.approach_step = {approach_step:?} makes at least {steps:.0} steps of loading and unloading (limit {limit})\n\
-         help: use a larger approach_step (default 0.01); it does not change results, which are located between the steps"
+        "cycle.approach_step = {approach_step:?} makes at least {steps:.0} steps of loading and unloading \
+         (limit {limit})\n\
+         help: use a larger approach_step (default 0.01); it does not change results, which are located \
+         between the steps"
     )]
     TooManySteps {
         /// Step of the approach, in rms heights.
@@ -200,7 +202,8 @@ pub enum StageError {
     },
     /// A stage lacks what an earlier one writes.
     #[error(
-        "cannot run the stage {stage} in {}: of {} of the previous stage, {}; for example {example}\nhelp: {}",
+        "cannot run the stage {stage} in {}: of {} of the previous stage, {}; for example {example}\n\
+         help: {}",
         shown(path), counted(*all, "task"), lacks(*missing, *damaged), incomplete_help(stage)
     )]
     Incomplete {

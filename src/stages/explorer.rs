@@ -77,7 +77,9 @@ pub(super) fn explorer(
     // No text of the data ends the element that holds it.
     let names: Vec<_> = kinds().into_iter().map(|(_, name)| name).collect();
     let statuses = SpotStatus::ALL.map(SpotStatus::word);
-    let data = json!({ "cycles": all, "names": names, "colours": EVENT_COLOURS, "statuses": statuses, "letters": LETTERS });
+    let data = json!({
+        "cycles": all, "names": names, "colours": EVENT_COLOURS, "statuses": statuses, "letters": LETTERS,
+    });
     Ok(Some(data.to_string().replace('<', "\\u003c")))
 }
 

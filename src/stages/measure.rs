@@ -325,8 +325,8 @@ fn spacing(params: &MeasuredSurface, scan: &Scan) -> Result<[f64; 2], StageError
         // Positions whose unit is unknown: the statement gives their scale.
         (None, Some([a, b]), Some([c, d])) if ((a / b) / (c / d) - 1.0).abs() > SAME => {
             let why = format!(
-                "the pixel sizes along x and y are {a} and {b} in the file, but {c:.4e} m and {d:.4e} m by {key}\nhelp: remove {key} ({option}), \
-                 or give both sizes (--size, for example \"5um x 3um\")"
+                "the pixel sizes along x and y are {a} and {b} in the file, but {c:.4e} m and {d:.4e} m by \
+                 {key}\nhelp: remove {key} ({option}), or give both sizes (--size, for example \"5um x 3um\")"
             );
             Err(refused(path, &why))
         }

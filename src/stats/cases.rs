@@ -17,8 +17,8 @@ use crate::store::{ColumnData, Frame};
 /// reversals of a case ascend.
 ///
 /// A case without finished realization has its row, with null means. The table has `<column>_mean`, `_sd`,
-/// `_ci95_low`, `_ci95_high`, `_min` and `_max` of columns of the table
-/// `realizations`; realizations in which that column is null are omitted. Columns that depend on the surface alone ([`CaseInput::surfaces`])
+/// `_ci95_low`, `_ci95_high`, `_min` and `_max` of columns of the table `realizations`; realizations in which
+/// that column is null are omitted. Columns that depend on the surface alone ([`CaseInput::surfaces`])
 /// include the surfaces of failed cycles. Fractions of contacts are weighted by the number of contacts.
 ///
 /// # Errors

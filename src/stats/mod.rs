@@ -148,7 +148,8 @@ pub enum StatsError {
     },
     /// Campaigns cannot be compared.
     #[error(
-        "cannot compare {label}: it varies parameters that also differ between the runs ({differing}); case {case_id} cannot be paired\n\
+        "cannot compare {label}: it varies parameters that also differ between the runs ({differing}); case \
+         {case_id} cannot be paired\n\
          help: compare runs that differ in one fixed parameter, or sweep the same values"
     )]
     Ambiguous {

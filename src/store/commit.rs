@@ -72,8 +72,8 @@ pub fn is_abandoned(path: &Path) -> bool {
 
 /// Writes a file with `write`, checks with `check` what can be read back, and puts it in place of `path`.
 ///
-/// `action` is what an error says was tried, as in "write the surface to". Both closures are given the path of the temporary file, which `write`
-/// finds empty.
+/// `action` is what an error says was tried, as in "write the surface to". Both closures are given the path
+/// of the temporary file, which `write` finds empty.
 ///
 /// # Errors
 /// If any step fails. The temporary file is then gone and what was at `path` is still there; only if the very

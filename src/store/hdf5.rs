@@ -26,8 +26,9 @@ pub fn alone<T>(act: impl FnOnce() -> T) -> T {
 /// Name of the height field in a surface file.
 pub const HEIGHT: &str = "height_m";
 /// Help for heights that differ from the heights written.
-const DAMAGED: &str = "restore the file, or run `hysteron verify DIR --deep` and `hysteron run DIR` for the output folder it is in; \
-                       after a change on purpose, delete the attribute `height_blake3` of its group `header`";
+const DAMAGED: &str = "restore the file, or run `hysteron verify DIR --deep` and `hysteron run DIR` for the \
+                       output folder it is in; after a change on purpose, delete the attribute \
+                       `height_blake3` of its group `header`";
 /// Rows that are written and compared at once.
 const BAND: usize = 256;
 

@@ -294,6 +294,23 @@ fn law_style_of_comments() {
 }
 
 #[test]
+fn law_source_lines_have_at_most_110_columns() {
+    let paths = sources(&root().join("src"));
+    assert!(paths.len() > 300, "{} files", paths.len());
+    let mut long = Vec::new();
+    for path in paths {
+        let Text { place, content } = file(&path);
+        for (number, line) in content.lines().enumerate() {
+            let columns = line.chars().count();
+            if columns > 110 {
+                long.push(format!("{place}:{}: {columns} columns", number + 1));
+            }
+        }
+    }
+    assert!(long.is_empty(), "{} long lines\n{}", long.len(), long.join("\n"));
+}
+
+#[test]
 fn law_style_of_the_help() {
     let help = |arguments: &[&str]| {
         let output = Command::new(env!("CARGO_BIN_EXE_hysteron")).args(arguments).env("COLUMNS", "80").output().unwrap();

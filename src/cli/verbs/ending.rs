@@ -192,7 +192,10 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
         .tallies
         .iter()
         .map(|(stage, t)| {
-            json!({ "stage": stage.word(), "planned_count": t.planned, "done_before_count": t.before, "computed_count": t.computed, "failed_count": t.failed })
+            json!({
+                "stage": stage.word(), "planned_count": t.planned, "done_before_count": t.before,
+                "computed_count": t.computed, "failed_count": t.failed,
+            })
         })
         .collect();
     let failures: Vec<_> = ended.failures.iter().map(|(id, why)| json!({ "id": id, "why": why })).collect();
@@ -218,7 +221,8 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
 pub(super) fn failed_cycles(failures: usize, dir: &Path) -> String {
     let them = if failures == 1 { "it" } else { "them" };
     format!(
-        "{} failed. Follow the help of the error and change the spec: without a change, a cycle fails again.\n\
+        "{} failed. Follow the help of the error and change the spec: without a change, a cycle fails \
+         again.\n\
          After a change of the program, `hysteron retry {}` reruns {them}.\n",
         counted(failures, "cycle"),
         shell_path(dir)

@@ -64,8 +64,9 @@ pub(super) fn ro_crate(
     let audit = campaign.audit(Check::Contents);
     if let Some(fault) = audit.first_fault() {
         return Err(failed(format!(
-            "cannot describe {}: {fault}
-help: `hysteron verify {} --deep` lists all faults; `hysteron run {}` repairs its tasks, `hysteron gc --delete` removes other files",
+            "cannot describe {}: {fault}\n\
+             help: `hysteron verify {} --deep` lists all faults; `hysteron run {}` repairs its tasks, \
+             `hysteron gc --delete` removes other files",
             shown(&dir),
             shell_path(&dir),
             shell_path(&dir)

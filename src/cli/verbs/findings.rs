@@ -39,8 +39,10 @@ pub(super) fn findings(runs: &[PathBuf], as_json: bool) -> Result<u8, Fault> {
     if readings.is_empty() {
         let dirs = runs.iter().map(|run| shown(run)).collect::<Vec<_>>().join(", ");
         return Err(failed(format!(
-            "cannot judge the findings: no two cases of {dirs} differ only in maximum load, magnification or Hurst exponent\n\
-             help: sweep `cycle.max_load`, `surface.magnification` or `surface.hurst`, as pipelines/readings.toml does"
+            "cannot judge the findings: no two cases of {dirs} differ only in maximum load, magnification or \
+             Hurst exponent\n\
+             help: sweep `cycle.max_load`, `surface.magnification` or `surface.hurst`, as \
+             pipelines/readings.toml does"
         )));
     }
     say(&if as_json {

@@ -90,7 +90,12 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
         let rings: Vec<Value> = prepared
             .rings
             .iter()
-            .map(|ring| json!({ "wavenumber_1_m": ring.wavenumber_1_m, "density_m4": ring.density_m4, "mode_count": ring.mode_count }))
+            .map(|ring| {
+                json!({
+                    "wavenumber_1_m": ring.wavenumber_1_m, "density_m4": ring.density_m4,
+                    "mode_count": ring.mode_count,
+                })
+            })
             .collect();
         say(&format!("{:#}\n", answer(&statistics, &rings)))?;
     } else {

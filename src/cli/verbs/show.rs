@@ -211,7 +211,8 @@ fn answer(id: &str, found: &Shown) -> Value {
     let tasks: Vec<_> = found.tasks.iter().map(|(id, state)| json!({ "id": id, "state": state })).collect();
     let Shown { kind, state, parameters, results, warnings, files, .. } = found;
     json!({
-        "id": id, "kind": kind, "state": state, "parameters": parameters, "results": results, "warnings": warnings, "tasks": tasks, "files": files,
+        "id": id, "kind": kind, "state": state, "parameters": parameters, "results": results,
+        "warnings": warnings, "tasks": tasks, "files": files,
     })
 }
 

@@ -234,7 +234,11 @@ fn jobs_json(campaign: &Campaign, jobs: &[Job], numbers: &[String]) -> String {
     let jobs: Vec<Value> = jobs
         .iter()
         .zip(numbers)
-        .map(|(job, number)| json!({ "stage": job.stage.word(), "job": number, "task_count": job.tasks.len().max(1) }))
+        .map(|(job, number)| {
+            json!({
+                "stage": job.stage.word(), "job": number, "task_count": job.tasks.len().max(1),
+            })
+        })
         .collect();
     format!(
         "{:#}\n",

@@ -188,7 +188,12 @@ impl Slurm {
         let Self::Sent { jobs, queue, ended } = self else { return None };
         let ended: Vec<Value> = ended
             .iter()
-            .map(|task| json!({ "job": task.name, "stage": task.stage, "state": task.state, "log": task.log.display().to_string() }))
+            .map(|task| {
+                json!({
+                    "job": task.name, "stage": task.stage, "state": task.state,
+                    "log": task.log.display().to_string(),
+                })
+            })
             .collect();
         Some(json!({
             "job_count": jobs.len(),
@@ -261,7 +266,9 @@ fn answer(campaign: &Campaign, units: &Units) -> Value {
         .collect();
     let unit = |stage: Stage, (id, standing): &(String, Standing)| {
         let stale = if *standing == Standing::Stale { stale(campaign, stage) } else { None };
-        let mut unit = json!({ "id": id, "state": standing.word(), "why": stale.as_deref().unwrap_or_else(|| reason(standing)) });
+        let mut unit = json!({
+            "id": id, "state": standing.word(), "why": stale.as_deref().unwrap_or_else(|| reason(standing)),
+        });
         if let Some(surface) = surfaces.get(id.as_str()).filter(|_| stage == Stage::Cycle) {
             unit["surface"] = (*surface).into();
         }
@@ -269,7 +276,11 @@ fn answer(campaign: &Campaign, units: &Units) -> Value {
     };
     let stages: Vec<_> = units
         .iter()
-        .map(|(stage, units)| json!({ "stage": stage.word(), "units": units.iter().map(|of| unit(*stage, of)).collect::<Vec<_>>() }))
+        .map(|(stage, units)| {
+            json!({
+                "stage": stage.word(), "units": units.iter().map(|of| unit(*stage, of)).collect::<Vec<_>>(),
+            })
+        })
         .collect();
     json!({ "name": campaign.spec.name, "dir": campaign.dir.display().to_string(), "stages": stages })
 }

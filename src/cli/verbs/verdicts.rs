@@ -177,5 +177,7 @@ pub(super) fn json(of: &Verdict) -> Value {
 
 /// Cases with a warning, in JSON.
 pub(super) fn outside_json(of: &Outside) -> Value {
-    json!({ "code": of.kind.code, "min": of.range[0], "max": of.range[1], "limit": of.limit, "cases": of.cases })
+    json!({
+        "code": of.kind.code, "min": of.range[0], "max": of.range[1], "limit": of.limit, "cases": of.cases,
+    })
 }

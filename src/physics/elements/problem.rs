@@ -1,8 +1,8 @@
 //! A rough rigid surface against an elastic half-space, its states and their energy.
 //!
-//! With the displacement `u` (zero mean), the mean gap `D` and the heights `z`, the gap is `g = D + u −
-//! z` and the energy `Π(u; D) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ
-//! V'(g)` at the mean penetration `Δ = max z − D`.
+//! With the displacement `u` (zero mean), the mean gap `D` and the heights `z`, the gap is `g = D + u − z`
+//! and the energy `Π(u; D) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ V'(g)` at the mean penetration
+//! `Δ = max z − D`.
 
 use super::grid::half_space::remove_mean;
 use super::grid::half_space::{HalfSpace, Operator, Waves};

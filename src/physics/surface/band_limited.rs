@@ -1,10 +1,10 @@
 //! Interpolation of heights and derivatives of a band-limited periodic surface.
 //!
-//! A surface of Eq 10 has no mode at or above
-//! `q1`, so a grid with more than two points per shortest wavelength determines it. Any value between the points is a sum over the grid with the cardinal sine. A Kaiser–Bessel window of half width `m`
-//! points makes the sum local. With `p` points per shortest wavelength its relative error is about `exp(−πm(1
-//! − 2/p))`. `m` is chosen so that this is below the rounding error of the heights. Derivatives are those of
-//! this sum, with spectral accuracy and without a transform.
+//! A surface of Eq 10 has no mode at or above `q1`, so a grid with more than two points per shortest
+//! wavelength determines it. Any value between the points is a sum over the grid with the cardinal sine. A
+//! Kaiser–Bessel window of half width `m` points makes the sum local. With `p` points per shortest wavelength
+//! its relative error is about `exp(−πm(1 − 2/p))`. `m` is chosen so that this is below the rounding error of
+//! the heights. Derivatives are those of this sum, with spectral accuracy and without a transform.
 
 use multiversion::multiversion;
 use ndarray::ArrayView2;

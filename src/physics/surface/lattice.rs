@@ -1,7 +1,7 @@
 //! Sums of powers over the modes of a periodic square, `Σ (kx² + ky²)^(−s)` with `1 ≤ kx² + ky² < ζ²`.
 //!
-//! Modes with `max(|kx|, |ky|)` below [`DIRECT`] are added one by one. Those with `max(|kx|, |ky|) =
-//! a` beyond it form four equal rows, and each row is a sum over b of `f(b) = (a² + b²)^(−s)` that the
+//! Modes with `max(|kx|, |ky|)` below [`DIRECT`] are added one by one. Those with `max(|kx|, |ky|) = a`
+//! beyond it form four equal rows, and each row is a sum over b of `f(b) = (a² + b²)^(−s)` that the
 //! Euler–Maclaurin formula replaces by an integral and derivatives at the last mode. The number of operations
 //! is proportional to ζ, not to ζ².
 //!

@@ -78,8 +78,8 @@ impl Field {
     ///
     /// Columns are added in order, so that the result is independent of the threads.
     ///
-    /// `add` receives the sum so far, the squared mode number, the number of modes that this one represents, and `|c_k|²`
-    /// \[m²\].
+    /// `add` receives the sum so far, the squared mode number, the number of modes that this one represents,
+    /// and `|c_k|²` \[m²\].
     fn sum<T: Clone + Send + Sync>(
         &self,
         zero: &T,

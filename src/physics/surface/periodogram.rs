@@ -10,10 +10,9 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Power spectral density `C(q) = |c_k|²/qL²` of a periodic surface, in rings of wavevectors.
 ///
-/// `c_k` are the modes of `h(x) = Σ_k c_k exp(i k·x)` on a square of side L \[m\], and `qL =
-/// 2π/L`. As for [`super::spectrum::Spectrum::density`] (Eq 10), `Σ_k C(k) qL² = h_rms²`. There are four
-/// rings per octave, from the lowest wavenumber to the grid's Nyquist wavenumber. Rings without modes are
-/// omitted.
+/// `c_k` are the modes of `h(x) = Σ_k c_k exp(i k·x)` on a square of side L \[m\], and `qL = 2π/L`. As for
+/// [`super::spectrum::Spectrum::density`] (Eq 10), `Σ_k C(k) qL² = h_rms²`. There are four rings per octave,
+/// from the lowest wavenumber to the grid's Nyquist wavenumber. Rings without modes are omitted.
 ///
 /// The field is taken as periodic. A mismatch at the edges of a non-periodic field leaks into a
 /// `q⁻²` spectrum. For such fields see [`windowed_periodogram`].

@@ -14,8 +14,8 @@ const TAPERED: f64 = 1.25 * 1.25;
 /// Half the second moment along a direction of the power of these tapers, `½ (1² + 2²)/8` in units of the
 /// lowest wavenumber squared.
 ///
-/// A power law of exponent p gains the fraction `p²/k²` times this at the mode number k, since `∇²k^(−p) = p²
-/// k^(−p−2)` in two dimensions.
+/// A power law of exponent p gains the fraction `p²/k²` times this at the mode number k, since
+/// `∇²k^(−p) = p² k^(−p−2)` in two dimensions.
 const WIDTH: f64 = 0.3125;
 /// Exponent of a spectrum before one is found.
 const USUAL_EXPONENT: f64 = 3.0;

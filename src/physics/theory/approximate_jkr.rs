@@ -1,10 +1,10 @@
 //! Approximate adhesive contact from the load and the area of adhesionless contact.
 //!
 //! # Equations
-//! Adhesionless contact at the penetration `δ1` has the load `P1`, the area `A` and the stiffness `S =
-//! dP1/dδ1`. Withdraw the surfaces by `x` at a constant contact area. The load falls to `P = P1 − S x` at the
-//! penetration `δ = δ1 − x`. The energy release rate is `½ x² dS/dA`. Griffith's condition, that it is equal
-//! to Δγ, gives
+//! Adhesionless contact at the penetration `δ1` has the load `P1`, the area `A` and the stiffness
+//! `S = dP1/dδ1`. Withdraw the surfaces by `x` at a constant contact area. The load falls to `P = P1 − S x`
+//! at the penetration `δ = δ1 − x`. The energy release rate is `½ x² dS/dA`. Griffith's condition, that it is
+//! equal to Δγ, gives
 //!
 //! ```text
 //! x = sqrt(2Δγ/(dS/dA)),   δ = δ1 − x,   P = P1 − S x

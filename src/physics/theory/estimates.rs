@@ -20,12 +20,13 @@
 //! | sticky line | `U_el/(2Δγ)` | Wang and Müser 2022 |
 //! | Tabor parameter of the asperities | [`Asperity::tabor`] | Eq 3 |
 //! | Fuller–Tabor parameter | [`fuller_tabor`] | Fuller and Tabor 1975 |
-//! | dissipated energy at `A = A0`, continuous and realised spectrum \[J\] | [`deng_kesari_loss_as_printed`] | Eqs A1–A4 |
+//! | dissipated energy at `A = A0`, target and realised \[J\] | [`deng_kesari_loss_as_printed`] | Eqs A1–A4 |
 //! | dissipated energy at `A = A0` of separation \[J\] | [`dalvi_loss`] | Dalvi et al. 2019 |
 //! | dissipated energy at `A = A0` of pinning \[J\] | [`pinning_loss`] | Sanner et al. 2024 |
 //! | dissipated energy of isolated asperities \[J\] | [`Asperity::loop_loss`] | Eq A1 |
 //! | loop of the JKR curve from the adhesionless one | [`adhesive_curve`], [`curve_loop`] | Ciavarella 2018 |
-//! | area without adhesion | [`adhesionless_area`], [`adhesionless_area_small`] | Persson 2001, Hyun et al. 2004 |
+//! | adhesionless area | [`adhesionless_area`] | Persson 2001 |
+//! | adhesionless area at small loads | [`adhesionless_area_small`] | Hyun et al. 2004 |
 
 use super::approximate_jkr::{CurveLoop, CurvePoint, adhesive_curve, curve_loop};
 use super::flattening::{Flattening, RelativeFlattening, flattening, shortest_wavelength};

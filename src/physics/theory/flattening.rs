@@ -16,11 +16,10 @@ use std::f64::consts::{PI, TAU};
 
 /// Elastic energy per nominal area of flattening the roughness of a surface completely.
 ///
-/// A mode of wavevector k and amplitude `c_k` is flattened by a pressure of amplitude `(E*/2) k
-/// c_k`. The stored energy is half of pressure times displacement: `U/A0 = (E*/4) Σ_k
-/// k|c_k|²` over all modes of both signs, or `(E*/4) ∫ q C(q)
-/// d²q` of a spectrum. With the reduced modulus `E*` \[Pa\], `k` and `q` \[1/m\], `c_k` \[m\], `C` \[m⁴\].
-/// Persson & Tosatti, J. Chem. Phys. 115, 5597 (2001).
+/// A mode of wavevector k and amplitude `c_k` is flattened by a pressure of amplitude `(E*/2) k c_k`. The
+/// stored energy is half of pressure times displacement: `U/A0 = (E*/4) Σ_k k|c_k|²` over all modes of both
+/// signs, or `(E*/4) ∫ q C(q) d²q` of a spectrum. With the reduced modulus `E*` \[Pa\], `k` and `q` \[1/m\],
+/// `c_k` \[m\], `C` \[m⁴\]. Persson & Tosatti, J. Chem. Phys. 115, 5597 (2001).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flattening {
     /// Energy of all the roughness, `qL ≤ q < q1` \[J/m²\].

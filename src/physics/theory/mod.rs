@@ -46,8 +46,8 @@ const NAYAK_DECAY: f64 = 0.25;
 /// `C1 = α/(2α − 3)` and `C2 = C1 sqrt(12/α)`, which is ¼ for every `α`.
 ///
 /// With Eq A2 as printed it is `8(C1² − C2²)/(16C1) = (α − 12)/(2(2α − 3))`, which is below ¼ and approaches
-/// it for large `α`. The density then integrates to `(√3/2)(c^(−3/2)/4 − c^(−1/2) + (c + ½)^(−1/2)) >
-/// 1`. For `α ≤ 12` the integral diverges, and the result is `None`.
+/// it for large `α`. The density then integrates to `(√3/2)(c^(−3/2)/4 − c^(−1/2) + (c + ½)^(−1/2)) > 1`. For
+/// `α ≤ 12` the integral diverges, and the result is `None`.
 #[must_use]
 pub fn curvature_decay(nayak_parameter: f64, slips: Slips) -> Option<f64> {
     if !slips.a2 {
@@ -239,10 +239,9 @@ pub fn sticky_line(persson_tosatti: f64) -> f64 {
 /// `load` is `p/E* = F/(E* A0) ≥ 0` and `rms_slope` the rms gradient `h'_rms` of the surface (both
 /// dimensionless). Persson, J. Chem. Phys. 115:3840 (2001).
 ///
-/// At full contact the pressure has the variance
-/// `E*²h'²_rms/4`, since a mode of amplitude c and wavevector k is flattened by `(E*/2) k
-/// c`. In Persson's theory pressures spread by diffusion up to that variance with an absorbing wall at zero. The remaining area in contact is `erf(p/(√2
-/// E* h'_rms/2))`.
+/// At full contact the pressure has the variance `E*²h'²_rms/4`, since a mode of amplitude c and wavevector k
+/// is flattened by `(E*/2) k c`. In Persson's theory pressures spread by diffusion up to that variance with
+/// an absorbing wall at zero. The remaining area in contact is `erf(p/(√2 E* h'_rms/2))`.
 #[must_use]
 pub fn adhesionless_area(load: f64, rms_slope: f64) -> f64 {
     libm::erf(std::f64::consts::SQRT_2 * load / rms_slope)

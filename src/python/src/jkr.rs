@@ -57,8 +57,10 @@ of_asperity! {
     jump_off_penetration() |spot| spot.jump_off_penetration();
     pull_off_radius() |spot| spot.pull_off_radius();
     pull_off_load() |spot| spot.pull_off_load();
-    radius_at_penetration(penetration_m) |spot, penetration| spot.radius_at_penetration(penetration).unwrap_or(f64::NAN);
-    stored_energy(penetration_m, a_m) |spot, penetration, a| within(a >= 0.0, spot.stored_energy(penetration, a));
+    radius_at_penetration(penetration_m) |spot, penetration|
+        spot.radius_at_penetration(penetration).unwrap_or(f64::NAN);
+    stored_energy(penetration_m, a_m) |spot, penetration, a|
+        within(a >= 0.0, spot.stored_energy(penetration, a));
     tabor(range_m) |spot, range| within(range > 0.0, spot.tabor(range));
     wu_jump_in_penetration(range_m) |spot, range| within(range > 0.0, spot.wu_jump_in_penetration(range));
     loop_loss() |spot| spot.loop_loss();

@@ -268,7 +268,8 @@ impl Matrix {
     fn spectrum(&self) -> Cause {
         format!(
             "this looks like a power spectral density, not a height map: {} with a wavevector\n\
-             help: give the heights that the spectrum was computed from, or generate surfaces of such a spectrum from a spec",
+             help: give the heights that the spectrum was computed from, or generate surfaces of such a \
+             spectrum from a spec",
             counted(self.columns as usize, "column")
         )
         .into()
@@ -299,7 +300,8 @@ impl Matrix {
 /// The refusal of two columns.
 fn line_scan() -> Cause {
     "two columns are a line scan (x and height), or one column with decimal commas\n\
-     help: give a matrix of heights, or three columns x, y and z; for one column with decimal commas give its points per line (--width)"
+     help: give a matrix of heights, or three columns x, y and z; for one column with decimal commas give \
+     its points per line (--width)"
         .into()
 }
 

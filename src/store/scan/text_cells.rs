@@ -115,8 +115,8 @@ impl Decimals {
                 self.comma = true;
                 with_comma(cell).ok_or_else(|| {
                     format!(
-                        "{:?} is not a number\nhelp: write numbers, and nan, bad, -- or nothing for missing points; \
-                         skip lines before the numbers with surface.skip_lines (--skip-lines)",
+                        "{:?} is not a number\nhelp: write numbers, and nan, bad, -- or nothing for missing \
+                         points; skip lines before the numbers with surface.skip_lines (--skip-lines)",
                         shown()
                     )
                 })?

@@ -34,9 +34,11 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
     let texture = measured.and_then(|of| of.texture.as_ref());
     let fit = measured.and_then(|of| of.fit).map(|fit| {
         json!({
-            "hurst": fit.hurst, "plateau_m4": fit.plateau_m4, "roll_off_1_m": fit.roll_off_1_m, "scatter": fit.scatter,
-            "rolls_off": fit.rolls_off, "roll_off_m": fit.roll_off_m(header.length_m), "long_cut_m": fit.long_cut_m,
-            "short_cut_m": fit.short_cut.map(|(wavelength, _)| wavelength), "short_cut_cause": fit.short_cut.map(|(_, cause)| cause.word()),
+            "hurst": fit.hurst, "plateau_m4": fit.plateau_m4, "roll_off_1_m": fit.roll_off_1_m,
+            "scatter": fit.scatter, "rolls_off": fit.rolls_off,
+            "roll_off_m": fit.roll_off_m(header.length_m), "long_cut_m": fit.long_cut_m,
+            "short_cut_m": fit.short_cut.map(|(wavelength, _)| wavelength),
+            "short_cut_cause": fit.short_cut.map(|(_, cause)| cause.word()),
         })
     });
     let mut answer = json!({
@@ -196,8 +198,9 @@ fn texture_caution(of: &Measured) -> Option<String> {
     let (aspect, limit) = (of.texture.as_ref()?.aspect(), Limit::of("texture")?);
     limit.is_passed(Some(aspect)).then(|| {
         format!(
-            "texture: aspect ratio {} (limit {}); expected ratios to boundary elements and the statistics of Nayak and of Deng and Kesari \
-             hold for isotropic surfaces only; use method = \"boundary_elements\"",
+            "texture: aspect ratio {} (limit {}); expected ratios to boundary elements and the statistics of \
+             Nayak and of Deng and Kesari hold for isotropic surfaces only; use method = \
+             \"boundary_elements\"",
             significant(aspect, 3),
             limit.bound
         )
@@ -278,8 +281,9 @@ fn cautions(header: &SurfaceHeader) -> Vec<String> {
             let points = (header.length_m / of.source_spacings_m[0].min(of.source_spacings_m[1])).round();
             let [a, b] = [rows as f64 * of.source_spacings_m[0], columns as f64 * of.source_spacings_m[1]];
             cautions.push(format!(
-                "crop: {:.0} % of the scan ({rows} x {columns} points, {a:.3e} m x {b:.3e} m) is outside the central square and dropped (limit {:.0} %); \
-                 {points} x {points} points remain, and all results are of these",
+                "crop: {:.0} % of the scan ({rows} x {columns} points, {a:.3e} m x {b:.3e} m) is outside the \
+                 central square and dropped (limit {:.0} %); {points} x {points} points remain, and all \
+                 results are of these",
                 100.0 * dropped,
                 100.0 * DROPPED
             ));
@@ -324,8 +328,9 @@ fn overshoot(of: &Measured, rms_height_m: f64) -> Option<String> {
     let limit =
         Limit::of("overshoot").filter(|limit| limit.is_passed(Some(of.overshoot_m / rms_height_m)))?;
     Some(format!(
-        "overshoot: filtered heights exceed the measured heights nearby by {:.2e} m beyond the noise (limit {:.0} % of h_rms, {:.2e} m); \
-         the sharp low-pass filter rings at steps, and its asperities there do not exist. Apply --filter gaussian",
+        "overshoot: filtered heights exceed the measured heights nearby by {:.2e} m beyond the noise (limit \
+         {:.0} % of h_rms, {:.2e} m); the sharp low-pass filter rings at steps, and its asperities there do \
+         not exist. Apply --filter gaussian",
         of.overshoot_m,
         100.0 * limit.bound,
         limit.bound * rms_height_m

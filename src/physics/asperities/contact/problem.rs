@@ -247,8 +247,8 @@ impl Problem {
         }
     }
 
-    /// Potential of a contact of radius `a` \[m\] on its branch, without its interaction \[J\]: `U(δ(a), a) −
-    /// Δγπa²`.
+    /// Potential of a contact of radius `a` \[m\] on its branch, without its interaction \[J\]:
+    /// `U(δ(a), a) − Δγπa²`.
     pub(crate) fn self_potential(&self, i: usize, a: f64) -> f64 {
         let asperity = &self.asperities[i];
         let adhesion = self.material.work_of_adhesion_j_m2 * PI * a * a;

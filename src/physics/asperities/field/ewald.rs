@@ -73,8 +73,8 @@ const GAMMA: [f64; ORDERS + 1] = {
 /// The sum for `S_0` diverges; it is replaced by the [`remainder`], the sum without its mean.
 ///
 /// Ewald's method for powers, with `s = m + ½` and the incomplete gamma functions `Γ(s, v) + γ(s, v) = Γ(s)`:
-/// `S_m = Σ_{R≠0} Γ(s, α²|r+R|²)/(Γ(s)|r+R|^2s) − γ(s, α²r²)/(Γ(s) r^2s) + π/Γ(s)·[Σ_{q≠0} (q/2)^(2s−2) Γ(1−s, q²/4α²) cos(q·r) + α^(2s−2)/(s−1)]`
-/// (Nijboer & de Wette, Physica 23:309, 1957).
+/// `S_m = Σ_{R≠0} Γ(s, α²|r+R|²)/(Γ(s)|r+R|^2s) − γ(s, α²r²)/(Γ(s) r^2s) + π/Γ(s)·[Σ_{q≠0} (q/2)^(2s−2)
+/// Γ(1−s, q²/4α²) cos(q·r) + α^(2s−2)/(s−1)]` (Nijboer & de Wette, Physica 23:309, 1957).
 #[must_use]
 pub fn image_sums(x: f64, y: f64, alpha: f64) -> [f64; ORDERS] {
     let mut sums = [0.0; ORDERS];

@@ -3,8 +3,8 @@
 //! Outside the spot (`r > a`), with `x = a/r` and `w = sqrt(1 − x²)`,
 //! `ŵ = a²/(πR)·[sqrt(r²/a² − 1) + (2 − r²/a²) asin x] − (2/π) sqrt(2πaΔγ/E*) asin x`. The bracket as printed
 //! suffers from cancellation: its relative error grows as `(r/a)²` and is 1e-4 at `r/a` = 1e6. But
-//! `[…]/x` and `asin(x)/x` are analytic in `w` on `[0, 1]` (the nearest singularity is `w =
-//! −1`). One polynomial in `w` for each is therefore accurate for every `r ≥ a`.
+//! `[…]/x` and `asin(x)/x` are analytic in `w` on `[0, 1]` (the nearest singularity is `w = −1`). One
+//! polynomial in `w` for each is therefore accurate for every `r ≥ a`.
 
 use crate::model::Slips;
 use multiversion::multiversion;

@@ -1,9 +1,9 @@
 //! Energy balance of a path: work of the load, potential, and energy dissipated in events.
 //!
 //! Between two global solves `Π + Σ energy dissipated − work` is constant. The events and the work are in the
-//! event log, and a whole branch is checked in
-//! `cycle::soundness`. Events are accounted for with the potential of their local problem while the rest of the contact keeps its loads; the response of the rest is known to first order (`expected_n`)
-//! until the next global solve measures it.
+//! event log, and a whole branch is checked in `cycle::soundness`. Events are accounted for with the
+//! potential of their local problem while the rest of the contact keeps its loads; the response of the rest
+//! is known to first order (`expected_n`) until the next global solve measures it.
 
 use super::event_log::EventLog;
 

@@ -3,10 +3,10 @@
 //!
 //! L-BFGS with two pairs and a *split* preconditioner, `M⁻¹ = P_O S K⁻¹ S P_O + P_C (V'' + 0.7)⁻¹ P_C` with
 //! `M` in E*/dx. Points in contact `C`, of `V'' > 0.3 E*/dx`, are nearly fixed by the wall. On the open
-//! points
-//! `O` the inverse of the elastic operator is the opposite-order (Calderón) preconditioner of the hypersingular operator, with the factor `S
-//! = 1 − min(V'', 0)` where the law softens. The condition number grows only as log² of the number of points
-//! along a side. An iteration is two operator applications, four transforms.
+//! points `O` the inverse of the elastic operator is the opposite-order (Calderón) preconditioner of the
+//! hypersingular operator, with the factor `S = 1 − min(V'', 0)` where the law softens. The condition number
+//! grows only as log² of the number of points along a side. An iteration is two operator applications, four
+//! transforms.
 //!
 //! Where bonds change in a few places, as in most events, these are brought to equilibrium first, on
 //! [patches](super::patch) of the grid.

@@ -87,9 +87,8 @@ impl Minimiser {
     }
 
     /// Rate at which the displacement follows the mean penetration at an equilibrium, and the stiffness
-    /// `dF/dΔ` of the contact: `(K + V'')·rate =
-    /// V''` for displacements of zero mean, by conjugate gradients. The stiffness `Σ V''·(1 − rate)` has an
-    /// error of second order in that of the rate.
+    /// `dF/dΔ` of the contact: `(K + V'')·rate = V''` for displacements of zero mean, by conjugate gradients.
+    /// The stiffness `Σ V''·(1 − rate)` has an error of second order in that of the rate.
     ///
     /// # Errors
     /// Not enough memory.

@@ -5,19 +5,17 @@
 //! near-tip field of Irwin (J. Appl. Mech. 24:361, 1957): the gap `g(x) = 4 sqrt(Δγ x/(πE*))` on the open
 //! side (`x > 0`) and the tension `σ(x) = sqrt(E*Δγ/(π|x|))` on the closed side. Convolve both with one even
 //! kernel `W`: the operator `E*|q|/2` is diagonal in the wavevector, so the convolved fields satisfy it too.
-//! If the spectrum of
-//! `W` vanishes above the Nyquist wavenumber of a grid, their values at the grid points satisfy the equations of the grid exactly, at every position of the front between two points and at every orientation. Eliminating `x`
-//! gives a law
-//! `σ(g)` under which a straight front has a continuous family of equilibria: no lattice trapping. By the J integral `∫σ
-//! dg = Δγ`.
+//! If the spectrum of `W` vanishes above the Nyquist wavenumber of a grid, their values at the grid points
+//! satisfy the equations of the grid exactly, at every position of the front between two points and at every
+//! orientation. Eliminating `x` gives a law `σ(g)` under which a straight front has a continuous family of
+//! equilibria: no lattice trapping. By the J integral `∫σ dg = Δγ`.
 //!
-//! `W` is a Gaussian of width `s =
-//! 0.6` grid spacings. Its spectrum is not 0 but 0.17 at the Nyquist wavenumber, so the last two statements hold approximately: the trapping that is left is below 1e-3 of Δγ (measured in the tests). In units of `ℓ
-//! = sqrt(Δγ dx/E*)` for gaps and `E*
-//! ℓ/dx` for stresses the law does not depend on the material. Its tension rises from 0 at `g =
-//! 0` with an infinite slope; that start is replaced by the spring `σ = k g` with `k = 4
-//! E*/dx`, which is the stiffness of the wall for `g <
-//! 0` as well, and the tension beyond is scaled by a factor near 1 so that `∫σ dg = Δγ` exactly.
+//! `W` is a Gaussian of width `s = 0.6` grid spacings. Its spectrum is not 0 but 0.17 at the Nyquist
+//! wavenumber, so the last two statements hold approximately: the trapping that is left is below 1e-3 of Δγ
+//! (measured in the tests). In units of `ℓ = sqrt(Δγ dx/E*)` for gaps and `E* ℓ/dx` for stresses the law does
+//! not depend on the material. Its tension rises from 0 at `g = 0` with an infinite slope; that start is
+//! replaced by the spring `σ = k g` with `k = 4 E*/dx`, which is the stiffness of the wall for `g < 0` as
+//! well, and the tension beyond is scaled by a factor near 1 so that `∫σ dg = Δγ` exactly.
 //!
 //! # Morse
 //! `V(g) = Δγ (e^(−2g/ρ) − 2e^(−g/ρ))`: attraction of a range ρ, for finite Tabor parameters and comparison
@@ -112,8 +110,8 @@ pub struct Morse {
 }
 
 /// Convolutions of the Gaussian `W` with the fields of the front at the distance `x`: of `√y`, of `1/√y`, and
-/// the derivative of the latter to `x`. With `y = t²` they are `∫₀^∞ 2t² W dt`, `∫₀^∞ 2 W dt` and `∫₀^∞ 2 W'
-/// dt`, where `W = W(x − t²)`.
+/// the derivative of the latter to `x`. With `y = t²` they are `∫₀^∞ 2t² W dt`, `∫₀^∞ 2 W dt` and
+/// `∫₀^∞ 2 W' dt`, where `W = W(x − t²)`.
 fn edge(x: f64) -> [f64; 3] {
     // The integrand is even and entire in t, so that the trapezoid rule converges exponentially.
     let end = (x.max(0.0) + 9.0 * KERNEL_WIDTH).sqrt();

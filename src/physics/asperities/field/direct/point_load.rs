@@ -30,9 +30,8 @@ impl DirectSum {
         sums.as_flattened()[..targets.len()].to_vec()
     }
 
-    /// Displacement \[m\] at each of
-    /// `targets` by loads next to one another, each where the target is farther than its reach, and by the images of their sum at `centre`
-    /// \[m\].
+    /// Displacement \[m\] at each of `targets` by loads next to one another, each where the target is farther
+    /// than its reach, and by the images of their sum at `centre` \[m\].
     ///
     /// The image sums have six digits.
     pub(crate) fn of_loads(&self, loads: &[PointLoad], centre: &[f64; 2], targets: &[usize]) -> Vec<f64> {

@@ -1,11 +1,11 @@
 //! Fast sum in n log n: near pairs exactly, the smooth far field on a mesh.
 //!
 //! Ewald splitting (Darden, York & Pedersen, J. Chem. Phys. 98:10089, 1993; Essmann et al., 103:8577, 1995)
-//! of a field with the far-field expansion `Σ_m c_m/r^(2m+1)`, m = 0 … 3 ([`super::multipole`]). As `∇^2m
-//! (1/r) = [(2m−1)!!]²/r^(2m+1)` in the plane, the smooth field of a spot is `Σ_m c_m
-//! ∇^2m(erf(αr)/r)/[(2m−1)!!]²`: one kernel, whose sources are a spot's load and Laplacians of it. Within the cutoff `r_c`
-//! of a source its field is exact, less the smooth field of its nearest image. The smooth fields of all
-//! sources and images come from a mesh.
+//! of a field with the far-field expansion `Σ_m c_m/r^(2m+1)`, m = 0 … 3 ([`super::multipole`]). As
+//! `∇^2m (1/r) = [(2m−1)!!]²/r^(2m+1)` in the plane, the smooth field of a spot is
+//! `Σ_m c_m ∇^2m(erf(αr)/r)/[(2m−1)!!]²`: one kernel, whose sources are a spot's load and Laplacians of it.
+//! Within the cutoff `r_c` of a source its field is exact, less the smooth field of its nearest image. The
+//! smooth fields of all sources and images come from a mesh.
 //!
 //! The radius of a spot must be small compared with its cutoff, so sources are grouped by radius. Each group
 //! has twice the cutoff of the previous one and a mesh half as fine, so one large spot adds only one long

@@ -78,11 +78,11 @@ pub(super) struct Accuracy {
 impl Accuracy {
     /// Parameters for displacements with errors up to `tolerance` times the largest one.
     ///
-    /// Three errors contribute. Beyond the cutoff,
-    /// `erfc(αr)` of a field is neglected. A B-spline of order p aliases a mode at the fraction t of the mesh's highest wavenumber with the weight `(t/(2
-    /// − t))^p`. The mode itself has the amplitude `e^(−(q/2α)²)`. Beyond `r = r_c` the far field lacks
-    /// `0.03 (a/r)⁸`. Each error is relative to a field at the cutoff, which is a small part of the largest
-    /// displacement. The measured total is below the tolerance in every case (3e-9 at 1e-8).
+    /// Three errors contribute. Beyond the cutoff, `erfc(αr)` of a field is neglected. A B-spline of order p
+    /// aliases a mode at the fraction t of the mesh's highest wavenumber with the weight `(t/(2 − t))^p`. The
+    /// mode itself has the amplitude `e^(−(q/2α)²)`. Beyond `r = r_c` the far field lacks `0.03 (a/r)⁸`. Each
+    /// error is relative to a field at the cutoff, which is a small part of the largest displacement. The
+    /// measured total is below the tolerance in every case (3e-9 at 1e-8).
     pub(super) fn of(tolerance: f64) -> Self {
         let tolerance = tolerance.clamp(1e-13, 1e-2);
         let mut edge = 1.0;
