@@ -168,11 +168,7 @@ fn of_asperities(
 /// The chosen case in words, with its method where a run has boundary elements.
 fn choice(method: Option<Method>, has_larger: bool) -> String {
     let has_larger = has_larger && method != Some(Method::BoundaryElements);
-    let method = match method {
-        Some(Method::BoundaryElements) => " by boundary elements",
-        Some(Method::Asperities) => " by the asperity model",
-        Some(Method::Auto) | None => "",
-    };
+    let method = method.map_or_else(String::new, |method| format!(" by {}", method.name()));
     let size = if has_larger {
         format!(" on surfaces of at most {GREATEST} × {GREATEST} points")
     } else {
