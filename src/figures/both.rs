@@ -114,7 +114,7 @@ pub fn method_ratios(methods: &Frame) -> Result<Option<Panel>, FigureError> {
         let ratios = methods.f64_or_null(&format!("{column}_ratio"))?;
         let points =
             x.iter().zip(ratios).filter_map(|(x, ratio)| x.zip(ratio.filter(|ratio| *ratio > 0.0))).collect();
-        curves.push(curve((name, ""), points, shade(hue, 0, 1), stroke));
+        curves.push(curve(name, "", points, shade(hue, 0, 1), stroke));
     }
     let points = || curves.iter().flat_map(|curve| curve.points.iter().copied());
     let (low, high) =

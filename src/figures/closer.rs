@@ -129,8 +129,8 @@ pub(super) fn of_loop(steps: &Frame, max_load: f64) -> Result<XyPlot, FigureErro
         Axis::holding("F/(E^{*}A_{0})", all().map(|point| point.1), true).with_headroom(0.1),
     );
     let curves = vec![
-        curve(("loading", ""), loading.clone(), shade(RESULT, 0, 1), Stroke::Dashed),
-        curve(("unloading", ""), unloading.clone(), shade(RESULT, 0, 1), Stroke::Solid),
+        curve("loading", "", loading.clone(), shade(RESULT, 0, 1), Stroke::Dashed),
+        curve("unloading", "", unloading.clone(), shade(RESULT, 0, 1), Stroke::Solid),
     ];
     Ok(plot(
         String::new(),
@@ -156,7 +156,7 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
         lost.truncate(MOST_POINTS);
         drawn += lost.len();
         let stroke = if *hue == OTHER { Stroke::Diamonds } else { Stroke::Points };
-        curves.push(curve((name, ""), lost, shade(*hue, 0, 1), stroke));
+        curves.push(curve(name, "", lost, shade(*hue, 0, 1), stroke));
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -195,7 +195,7 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
             sizes.iter().enumerate().map(|(k, size)| (*size as f64, (sizes.len() - k) as f64)).collect();
         points.dedup_by_key(|point| point.0);
         let stroke = if *hue == OTHER { Stroke::Dashed } else { Stroke::Solid };
-        curves.push(Curve { marked: true, ..curve((name, ""), points, shade(*hue, 0, 1), stroke) });
+        curves.push(Curve { marked: true, ..curve(name, "", points, shade(*hue, 0, 1), stroke) });
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -227,7 +227,7 @@ fn distribution(
             .collect();
         values.sort_by(f64::total_cmp);
         let count = values.len();
-        curves.push(curve((landmark.words(), ""), cumulative(&values), shade(hue, 0, 1), stroke));
+        curves.push(curve(landmark.words(), "", cumulative(&values), shade(hue, 0, 1), stroke));
         key.push((format!("{}: {}", landmark.words(), counted(count, "contact spot")), hue, stroke));
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
@@ -283,8 +283,8 @@ fn spectrum(of: &Closer<'_>) -> XyPlot {
     let found: Vec<(f64, f64)> = of.found.iter().filter(|point| point.1 > 1e-14 * most).copied().collect();
     // The target lies on the realised spectrum, and is painted over it.
     let curves = vec![
-        Curve { marked: true, ..curve(("realised", ""), found, shade(RESULT, 0, 1), Stroke::Solid) },
-        curve(("target", ""), of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
+        Curve { marked: true, ..curve("realised", "", found, shade(RESULT, 0, 1), Stroke::Solid) },
+        curve("target", "", of.asked.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
     ];
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -314,8 +314,8 @@ fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
         .enumerate()
         .flat_map(|(k, count)| [k, k + 1].map(|at| (at as f64 * width, *count as f64 * unit)));
     let curves = vec![
-        curve(("nayak", ""), of.nayak.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
-        curve(("realised", ""), bars.collect(), shade(RESULT, 0, 1), Stroke::Solid),
+        curve("nayak", "", of.nayak.to_vec(), shade(THEORY, 0, 1), Stroke::Dashed),
+        curve("realised", "", bars.collect(), shade(RESULT, 0, 1), Stroke::Solid),
     ];
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (

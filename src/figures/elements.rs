@@ -54,7 +54,8 @@ fn marked(mut plot: XyPlot) -> XyPlot {
     plot.key.push(entry("Θ/(E^{*}A_{0}h_{rms})", RESULT, Some(Stroke::Area), true));
     if let Some((at, load)) = lowest {
         plot.curves.push(curve(
-            ("pull_off", ""),
+            "pull_off",
+            "",
             vec![(at, 0.0), (at, load)],
             shade(THEORY, 0, 1),
             Stroke::Dotted,
@@ -82,7 +83,7 @@ fn area(loading: &[(f64, f64)], unloading: &[(f64, f64)]) -> Curve {
         at.into_iter().map(|x| (x, between(&up, x), between(&down, x))).collect();
     let points = ends.iter().map(|(x, up, down)| (*x, 0.5 * (up + down))).collect();
     let errors = ends.iter().map(|(_, up, down)| Some(0.5 * (up - down).abs())).collect();
-    Curve { errors, band: true, ..curve(("area", ""), points, shade(RESULT, 0, 1), Stroke::Area) }
+    Curve { errors, band: true, ..curve("area", "", points, shade(RESULT, 0, 1), Stroke::Area) }
 }
 
 /// The load at a penetration, linear between the points of a branch, 0 before the first one and that of the

@@ -122,9 +122,9 @@ fn plots(tables: &Tables<'_>, found: &Sweep) -> Result<Vec<(char, XyPlot)>, Figu
         branch("dissipated_loading", "loading", Stroke::Dashed),
     ];
     Ok(vec![
-        ('A', paths(tables.curves, found, ("area", "A/A_{0}"), true)?),
+        ('A', paths(tables.curves, found, "area", "A/A_{0}", true)?),
         ('B', results(tables, found, "F_{po}/(E^{*}A_{0})", &[computed("pull_off_load")], &[])?),
-        ('C', paths(tables.curves, found, ("penetration", "Δ/h_{rms}"), false)?),
+        ('C', paths(tables.curves, found, "penetration", "Δ/h_{rms}", false)?),
         ('D', results(tables, found, LOSS, &[computed("loss")], &theories)?),
         ('E', results(tables, found, LOSS, &branches, &[])?),
     ])

@@ -13,7 +13,8 @@ const LOAD: &str = "F/(E^{*}A_{0})";
 pub(super) fn paths(
     table: &Frame,
     sweep: &Sweep,
-    (column, label): (&str, &str),
+    column: &str,
+    label: &str,
     positive: bool,
 ) -> Result<XyPlot, FigureError> {
     let (ids, branches) = (table.text("case_id")?, table.text("branch")?);
@@ -31,7 +32,7 @@ pub(super) fn paths(
         let points = rows.iter().filter_map(point).collect();
         let errors: Vec<Option<f64>> = rows.iter().map(|row| spreads.get(*row).copied().flatten()).collect();
         let band = errors.iter().any(Option::is_some);
-        let of_path = curve((branch, &member.label), points, member.colour.clone(), stroke);
+        let of_path = curve(branch, &member.label, points, member.colour.clone(), stroke);
         Curve { errors, band, positive, ..of_path }
     };
     let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());

@@ -115,7 +115,7 @@ fn predict(
         }
         let line = Curve {
             joined: sweep.is_joined(),
-            ..curve((theory, name), points, shade(THEORY, at, series.len()), stroke)
+            ..curve(theory, name, points, shade(THEORY, at, series.len()), stroke)
         };
         any |= !line.points.is_empty();
         marked |= line.is_marked();
@@ -160,7 +160,7 @@ fn measure(
             hues.resize(crosses.len(), member.colour.clone());
         }
         spread |= errors.iter().any(Option::is_some);
-        let mean = curve((name, series_name), points, shade(NEUTRAL, 0, 1), stroke);
+        let mean = curve(name, series_name, points, shade(NEUTRAL, 0, 1), stroke);
         let mark_colours = members.iter().map(|member| member.colour.clone()).collect();
         drawn.curves.push(Curve {
             errors,
@@ -171,12 +171,8 @@ fn measure(
             ..mean
         });
         if !crosses.is_empty() {
-            let single = curve(
-                (&format!("{name}_single"), series_name),
-                crosses,
-                shade(NEUTRAL, 0, 1),
-                Stroke::Crosses,
-            );
+            let single =
+                curve(&format!("{name}_single"), series_name, crosses, shade(NEUTRAL, 0, 1), Stroke::Crosses);
             drawn.curves.push(Curve { mark_colours: hues, ..single });
         }
     }

@@ -59,7 +59,7 @@ pub fn sensitivity(cases: &Frame, realizations: &Frame) -> Result<Option<Drawing
         );
     }
     for (place, (symbol, _)) in QUANTITIES.iter().enumerate() {
-        svg += &column(&rows, place, symbol, (left + place as f64 * (COLUMN + GAP), foot));
+        svg += &column(&rows, place, symbol, left + place as f64 * (COLUMN + GAP), foot);
     }
     svg += "</svg>";
     let shown = if all > rows.len() {
@@ -102,7 +102,7 @@ fn percent(of: Difference) -> Option<(f64, Option<f64>)> {
 }
 
 /// The bars of a quantity above their axis.
-fn column(rows: &[Row], place: usize, symbol: &str, (left, foot): (f64, f64)) -> String {
+fn column(rows: &[Row], place: usize, symbol: &str, left: f64, foot: f64) -> String {
     let changes = || rows.iter().map(|row| row.changes[place]);
     let ends = changes()
         .flatten()

@@ -42,12 +42,7 @@ pub(super) fn case_colour(place: usize, load: usize, loads: usize) -> String {
 }
 
 /// A curve without errors, of something and by its name.
-pub(super) fn curve(
-    (name, of): (&str, &str),
-    points: Vec<(f64, f64)>,
-    colour: String,
-    stroke: Stroke,
-) -> Curve {
+pub(super) fn curve(name: &str, of: &str, points: Vec<(f64, f64)>, colour: String, stroke: Stroke) -> Curve {
     let [name, of] = [name, of].map(str::to_owned);
     let mark_colours = Vec::new();
     Curve {

@@ -273,6 +273,14 @@ choice! {
     }
 }
 
+impl Method {
+    /// Name of the method in a sentence.
+    #[must_use]
+    pub fn name(self) -> String {
+        self.word().replace('_', " ")
+    }
+}
+
 impl Slip {
     /// True if the contact model itself uses the equation. The others only enter the estimate of Deng and
     /// Kesari, so they do not change the cycle.

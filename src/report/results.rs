@@ -68,7 +68,7 @@ fn row(cases: &Cases<'_>, listed: &Listed, scales: &[Scale]) -> Result<Markup, S
     let (done, planned, failed) = (count("done_count")?, count("planned_count")?, count("failed_count")?);
     let mut cells = Vec::new();
     for ((_, column, positive), scale) in RESULTS.into_iter().zip(scales) {
-        cells.push(result(cases, row, column, (*scale, positive))?);
+        cells.push(result(cases, row, column, *scale, positive)?);
     }
     Ok(html! {
         (cases.name(listed))
@@ -82,7 +82,8 @@ fn result(
     cases: &Cases<'_>,
     row: usize,
     column: &str,
-    (scale, positive): (Scale, bool),
+    scale: Scale,
+    positive: bool,
 ) -> Result<Markup, StatsError> {
     let number = |end: &str| cases.number(&format!("{column}_{end}"), row);
     let (mean, low, high) = (number("mean")?, number("ci95_low")?, number("ci95_high")?);

@@ -77,7 +77,7 @@ pub fn reference() -> String {
 fn top() -> String {
     let seed = i64::MAX;
     let (least, most) = DEFAULT_BOUNDS;
-    let goals: String = Goal::MEANINGS.iter().map(entry).collect();
+    let goals: String = Goal::MEANINGS.iter().map(|(word, meaning)| entry(word, meaning)).collect();
     let text = format!(
         "
 ## Top level
@@ -147,7 +147,7 @@ fn section(table: &str) -> String {
         section += &paragraph("- ", &format!("`{}`: {}{more}", key.name, key.meaning));
         section.push('\n');
         if let Kind::Word(choice) | Kind::Words(choice) = &key.kind {
-            section.extend(choice.iter().map(entry));
+            section.extend(choice.iter().map(|(word, meaning)| entry(word, meaning)));
         }
     }
     if table == "surface" {
@@ -160,7 +160,7 @@ fn section(table: &str) -> String {
 }
 
 /// One word of a choice as an entry of an inner list.
-fn entry((word, meaning): &(&str, &str)) -> String {
+fn entry(word: &str, meaning: &str) -> String {
     paragraph("  - ", &format!("`\"{word}\"`: {meaning}")) + "\n"
 }
 

@@ -34,7 +34,7 @@ pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, St
     };
     let compute =
         || Ok((Outcome::of(write(campaign, &standings, &key)?), campaign.statistics_preimages(&standings)));
-    run_single(single, (context, task.check), || None, compute)
+    run_single(single, context, task.check, || None, compute)
 }
 
 /// The error of cycles that are neither done nor failed.

@@ -79,7 +79,7 @@ pub fn compare(folders: &[PathBuf], out: &Path, force: bool) -> Result<Compariso
         table: &table,
     })?;
     files.push((PAGE.to_owned(), page.into_bytes()));
-    write((out, force), &files, &table, &clock)?;
+    write(out, force, &files, &table, &clock)?;
     Ok(Comparison { page: out.join(PAGE), table, names })
 }
 
@@ -100,7 +100,8 @@ fn figures(drawings: &[(String, Vec<Panel>)], groups: usize) -> Result<Vec<(Stri
 /// Writes the files of a comparison, its table and its receipt, and removes files of the comparison that was
 /// there.
 fn write(
-    (out, force): (&Path, bool),
+    out: &Path,
+    force: bool,
     files: &[(String, Vec<u8>)],
     table: &Frame,
     clock: &Clock,

@@ -18,7 +18,8 @@ const LARGEST_CUTOFF: f64 = 0.5;
 pub(super) fn corrected(
     params: &MeasuredSurface,
     heights_m: Array2<f64>,
-    (spacing_m, first): ([f64; 2], FirstIndex),
+    spacing_m: [f64; 2],
+    first: FirstIndex,
     treatment: &Treatment,
 ) -> Result<(Prepared, Quality), StageError> {
     // Rows and columns are those of the file.

@@ -61,7 +61,8 @@ pub(super) fn in_the_way(campaign: &Campaign, task: &Unit<'_>) -> Result<(), Sta
 /// Prints and records that a task failed by an error of its own, in the place of every cycle that needs it.
 pub(super) fn report(
     campaign: &Campaign,
-    (id, cycles): (&str, &[&CycleUnit]),
+    id: &str,
+    cycles: &[&CycleUnit],
     stage: Stage,
     error: &StageError,
     watch: &dyn Watch,

@@ -74,7 +74,7 @@ pub fn measure(params: &MeasuredSurface, digest: &str, key: &str) -> Result<Impo
         points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
     };
     let (prepared, quality) =
-        corrected(params, in_metres(path, scan.heights, unit)?, (spacing, scan.first), &treatment)?;
+        corrected(params, in_metres(path, scan.heights, unit)?, spacing, scan.first, &treatment)?;
     let measured = Measured {
         source: path
             .file_name()

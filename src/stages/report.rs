@@ -104,7 +104,7 @@ pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, St
         incomplete(campaign, Stage::Report, &[("statistics".to_owned(), standing)])
     };
     let compute = || Ok((write(campaign, &standings, &key)?, campaign.report_preimages(&statistics)));
-    run_single(single, (context, check), ready, compute)
+    run_single(single, context, check, ready, compute)
 }
 
 /// Stem of the file and drawing of a panel.
@@ -128,7 +128,7 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Outco
     for (place, bytes) in &figures {
         files.push(commit::commit_bytes("write a figure", &campaign.dir.join(place), bytes)?);
     }
-    let page = page((campaign, standings), key, &statistics, &drawings)?;
+    let page = page(campaign, standings, key, &statistics, &drawings)?;
     let panels = table(&drawings.all_panels())?;
     files.push(parquet::write_table(
         &campaign.statistics_path("panels"),
@@ -140,7 +140,8 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Outco
 }
 
 fn page(
-    (campaign, standings): (&Campaign, &[Standing]),
+    campaign: &Campaign,
+    standings: &[Standing],
     key: &str,
     statistics: &Statistics,
     drawings: &Drawings,

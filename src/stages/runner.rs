@@ -73,7 +73,7 @@ pub(super) fn run_stage<T: Tasks>(tasks: &T, context: Context<'_>) -> Result<Tal
     let mut open: Vec<&T::Of> = due.into_iter().map(|(of, _)| of).collect();
     require(tasks, &open, context.campaign)?;
     open.sort_by_key(|of| Reverse(tasks.duration_rank(of)));
-    let tally = compute(tasks, &open, (context, planned - given_up))?;
+    let tally = compute(tasks, &open, context, planned - given_up)?;
     Ok(Tally { planned, failed: tally.failed + given_up, ..tally })
 }
 
@@ -108,7 +108,8 @@ fn require<T: Tasks>(tasks: &T, open: &[&T::Of], campaign: &Campaign) -> Result<
 fn compute<T: Tasks>(
     tasks: &T,
     open: &[&T::Of],
-    (context, planned): (Context<'_>, usize),
+    context: Context<'_>,
+    planned: usize,
 ) -> Result<Tally, StageError> {
     let Context { campaign, watch, .. } = context;
     let before = planned - open.len();
@@ -119,7 +120,7 @@ fn compute<T: Tasks>(
         let outcome = failure::fenced(|| tasks.compute(of));
         if let Err(error) = &outcome {
             watch.failed(T::STAGE, unit.id);
-            failure::report(campaign, (unit.id, &tasks.cycles(of)), T::STAGE, error, watch)?;
+            failure::report(campaign, unit.id, &tasks.cycles(of), T::STAGE, error, watch)?;
         }
         clock.receipt(campaign, &unit, tasks.key_inputs(of), &outcome?)?;
         tasks.clean_up(of);
@@ -153,7 +154,8 @@ pub(super) struct Single<'a> {
 /// inputs, `compute` the written files and the key inputs.
 pub(super) fn run_single(
     single: Single<'_>,
-    (context, check): (Context<'_>, Check),
+    context: Context<'_>,
+    check: Check,
     ready: impl FnOnce() -> Option<StageError>,
     compute: impl FnOnce() -> Result<(Outcome, Map<String, Value>), StageError>,
 ) -> Result<Tally, StageError> {

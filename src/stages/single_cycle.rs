@@ -36,7 +36,8 @@ struct Chosen<'a> {
 /// The first finished cycle of the case by a method with the largest mean Θ, at that load reversal;
 /// `None` without one that `fits`.
 fn choose<'a>(
-    (campaign, standings): (&'a Campaign, &[Standing]),
+    campaign: &'a Campaign,
+    standings: &[Standing],
     cases: &Frame,
     method: Method,
     fits: impl Fn(&CycleUnit) -> bool,
@@ -79,7 +80,7 @@ fn of_elements(
     standings: &[Standing],
     cases: &Frame,
 ) -> Result<Option<SingleCycle>, StageError> {
-    let chosen = choose((campaign, standings), cases, Method::BoundaryElements, |_| true)?;
+    let chosen = choose(campaign, standings, cases, Method::BoundaryElements, |_| true)?;
     let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
     let case = &campaign.cases[unit.case].case.params;
     let parameters = parameters(case, campaign.label_of(&case.surface).as_deref(), max_load);
@@ -113,7 +114,7 @@ fn of_asperities(
 ) -> Result<Option<SingleCycle>, StageError> {
     let grid = |surface: &GeneratedSurface| surface.grid() <= GREATEST;
     let fits = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.generated().is_none_or(grid);
-    let chosen = choose((campaign, standings), cases, Method::Asperities, fits)?;
+    let chosen = choose(campaign, standings, cases, Method::Asperities, fits)?;
     let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
     let has_elements = cases.text("method")?.iter().any(|method| *method != Method::Asperities.word());
     let choice = choice(has_elements.then_some(Method::Asperities), has_larger);
@@ -168,11 +169,7 @@ fn of_asperities(
 /// The chosen case in words, with its method where a run has boundary elements.
 fn choice(method: Option<Method>, has_larger: bool) -> String {
     let has_larger = has_larger && method != Some(Method::BoundaryElements);
-    let method = match method {
-        Some(Method::BoundaryElements) => " by boundary elements",
-        Some(Method::Asperities) => " by the asperity model",
-        Some(Method::Auto) | None => "",
-    };
+    let method = method.map_or_else(String::new, |method| format!(" by {}", method.name()));
     let size = if has_larger {
         format!(" on surfaces of at most {GREATEST} × {GREATEST} points")
     } else {

@@ -38,7 +38,7 @@ pub fn methods(
             let mut shared: Given = Vec::new();
             let mut own: Vec<Given> = vec![Vec::new(); found.len()];
             for column in COMPARED {
-                compare(column, &found, realizations, (&mut shared, &mut own))?;
+                compare(column, &found, realizations, &mut shared, &mut own)?;
             }
             let (surfaces, numbers) = (realizations.text("surface_id")?, realizations.i64("realization")?);
             let ratio = realizations.f64_or_null("persson_tosatti_realised")?;
@@ -84,7 +84,8 @@ fn compare(
     column: &str,
     pairs: &[Pair],
     realizations: &Frame,
-    (shared, own): (&mut Given, &mut [Given]),
+    shared: &mut Given,
+    own: &mut [Given],
 ) -> Result<(), StatsError> {
     let values = realizations.f64_or_null(column)?;
     let mut ratios = Vec::new();

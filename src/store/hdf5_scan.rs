@@ -51,7 +51,7 @@ pub fn read_scan(path: &Path, asked: &Asked<'_>) -> Result<Scan, StoreError> {
             )
             .into());
         };
-        field(path, &file, (&name, &data))?.scan()
+        field(path, &file, &name, &data)?.scan()
     })
     .map_err(|cause| StoreError::new("read the surface from", path, cause))
 }
@@ -69,7 +69,7 @@ pub fn search(path: &Path) -> Result<(Vec<String>, u64), StoreError> {
 }
 
 /// A dataset with everything that the file states of it.
-fn field(path: &Path, file: &File, (name, data): (&str, &Dataset)) -> Result<Field, Cause> {
+fn field(path: &Path, file: &File, name: &str, data: &Dataset) -> Result<Field, Cause> {
     let shape = data.get_shape()?;
     let count = |place: usize| shape.get(place).copied().unwrap_or_default();
     let Some(places) = points(&shape) else {

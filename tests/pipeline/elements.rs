@@ -98,8 +98,7 @@ fn e2e_both_methods_side_by_side() {
     }
     // Boundary elements are the first single cycle; the asperity model follows.
     let section = page.split(">Single cycle</h2>").nth(1).unwrap();
-    let places =
-        ["by boundary elements with the largest mean", "by the asperity model with the largest mean"].map(|text| section.find(text));
+    let places = ["by boundary elements with the largest mean", "by asperities with the largest mean"].map(|text| section.find(text));
     assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
     // Done is done, and the files are those of their records.
     assert!(stdout(&bench.verb("run", &[])).contains("Nothing to do"));

@@ -46,15 +46,6 @@ fn range(values: impl Iterator<Item = f64> + Clone, digits: usize) -> Option<Str
     Some(if low == high { low } else { format!("{low} to {high}") })
 }
 
-/// Name of a method in a sentence.
-fn name(method: Method) -> &'static str {
-    match method {
-        Method::Asperities => "asperities",
-        Method::BoundaryElements => "boundary elements",
-        Method::Auto => "automatic choice",
-    }
-}
-
 /// One paragraph for each regime and method.
 fn regimes(verdicts: &[Verdict]) -> String {
     let mut groups: BTreeMap<_, Vec<&Verdict>> = BTreeMap::new();
@@ -84,7 +75,7 @@ fn regime(group: &[&Verdict], all: usize) -> String {
     format!(
         "{}, {}{cases}: {ratios}{octave}. {expectation}.{}",
         regime.name(),
-        name(first.method),
+        first.method.name(),
         effective(group)
     )
 }
@@ -123,11 +114,11 @@ fn costs(verdicts: &[Verdict]) -> String {
         let text = format!(
             "{}: {grid} {points} points a side, {per_wavelength} per shortest wavelength; some {memory} GB, \
              up to about {time} a cycle",
-            name(method)
+            method.name()
         );
         Some(wrapped(&format!("{:10}{text}", "cost"), INDENT))
     };
-    [Method::Asperities, Method::BoundaryElements].into_iter().filter_map(of).collect()
+    Method::WORDS.iter().filter_map(|(_, method)| of(*method)).collect()
 }
 
 /// Errors by which the run would fail, each with the number of its cases.

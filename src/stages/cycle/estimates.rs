@@ -27,8 +27,9 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
     let each = |value: fn(&LoadEstimates) -> Option<f64>, unit: f64| {
         at_load.iter().map(move |at| value(at).map(|value| value / unit))
     };
-    let touched =
-        |turning: &(usize, f64)| all.isolated_loss_j(&touched(&computed.cycle, *turning)) / energy_scale_j;
+    let touched = |(turning, load): &(usize, f64)| {
+        all.isolated_loss_j(&touched(&computed.cycle, *turning, *load)) / energy_scale_j
+    };
     let reversals = reversals(&computed.cycle, loads);
     let by_asperities = |turning: &Option<(usize, f64)>| {
         turning.as_ref().filter(|_| computed.per_wavelength.is_none()).map(touched)
@@ -79,7 +80,7 @@ fn reversals(cycle: &Cycle<()>, loads: &[f64]) -> Vec<Option<(usize, f64)>> {
 }
 
 /// Asperities that jumped into contact in the loop of a load reversal, each once, ascending.
-fn touched(cycle: &Cycle<()>, (turning, max_load): (usize, f64)) -> Vec<usize> {
+fn touched(cycle: &Cycle<()>, turning: usize, max_load: f64) -> Vec<usize> {
     let is_in_loop = |event: &&Event| match cycle.steps[event.step].max_load {
         None => event.step <= turning,
         Some(load) => load == max_load,

@@ -31,7 +31,7 @@ pub(super) fn read(mut source: Source) -> Result<Scan, Cause> {
     }
     // A row is a scan line along x, as in images: C order of rows and columns is Fortran order of x and y.
     let layout = if about.layout == Layout::Rows { Layout::Columns } else { Layout::Rows };
-    let heights = field(&mut source.file, (kind, order), [columns, rows], layout, |value| value)?;
+    let heights = field(&mut source.file, kind, order, [columns, rows], layout, |value| value)?;
     Ok(Scan::bare(heights, FirstIndex::Y))
 }
 

@@ -140,7 +140,8 @@ pub(super) fn stream(
 /// Reads a field of checked extent, rows by columns, whichever index runs fastest in the file.
 pub(super) fn field(
     from: &mut impl Read,
-    (kind, order): (Number, Order),
+    kind: Number,
+    order: Order,
     [rows, columns]: [u64; 2],
     layout: Layout,
     turn: impl Fn(f64) -> f64,

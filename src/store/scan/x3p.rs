@@ -50,16 +50,16 @@ pub(super) fn read(source: Source) -> Result<Scan, Cause> {
     // Of at most 2^28 points, so that nothing overflows.
     let count = about.shape[0] * about.shape[1];
 
-    let mut data = part((&mut archive, &names), &about.data, count * about.kind.width() as u64, length)?;
+    let mut data = part(&mut archive, &names, &about.data, count * about.kind.width() as u64, length)?;
     // Heights are left to the bit where there is nothing to turn them by.
     let turn = |value: f64| match (about.increment, about.offset) {
         (None, None) => value,
         (increment, offset) => value * increment.unwrap_or(1.0) + offset.unwrap_or(0.0),
     };
-    let mut heights = field(&mut data, (about.kind, Order::Little), about.shape, Layout::Columns, turn)?;
+    let mut heights = field(&mut data, about.kind, Order::Little, about.shape, Layout::Columns, turn)?;
     ends(data, &about.data)?;
     if let Some(name) = &about.valid {
-        let mut bits = part((&mut archive, &names), name, count.div_ceil(8), length)?;
+        let mut bits = part(&mut archive, &names, name, count.div_ceil(8), length)?;
         remove(&mut heights, &mut bits)?;
         ends(bits, name)?;
     }
@@ -169,7 +169,8 @@ fn description(archive: &mut Archive, names: &Names) -> Result<String, Cause> {
 
 /// A part of the archive, which must have a size of `bytes`.
 fn part<'a>(
-    (archive, names): (&'a mut Archive, &Names),
+    archive: &'a mut Archive,
+    names: &Names,
     name: &str,
     bytes: u64,
     length: u64,

@@ -53,7 +53,7 @@ impl Square {
 
 impl Lattice {
     /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
-    fn of(of: Of<'_>, (length_m, wavelengths): (f64, f64)) -> Self {
+    fn of(of: Of<'_>, length_m: f64, wavelengths: f64) -> Self {
         let points = of.options.grid(wavelengths);
         let spacing_m = length_m / f64::from(points);
         Self {
@@ -66,12 +66,13 @@ impl Lattice {
 
     /// The grid of a case on its generated surface.
     pub(super) fn of_generated(of: Of<'_>, surface: &GeneratedSurface) -> Self {
-        Self::of(of, (surface.length_m, f64::from(surface.magnification)))
+        Self::of(of, surface.length_m, f64::from(surface.magnification))
     }
 
     /// The grid of a case on a measured surface.
     pub(super) fn of_measured(of: Of<'_>, square: Square) -> Self {
-        Self::of(of, square.extent())
+        let (length_m, wavelengths) = square.extent();
+        Self::of(of, length_m, wavelengths)
     }
 }
 
@@ -88,7 +89,7 @@ pub(super) fn checked_lattice(
     {
         return Err(PhysicsError::Surface { problem, help }.into());
     }
-    let lattice = Lattice::of(of, (length_m, wavelengths));
+    let lattice = Lattice::of(of, length_m, wavelengths);
     enough_memory(lattice.points, loads)?;
     let refused = lattice.range_m.and_then(|range_m| elements.refusal_of_range(range_m, rms_height_m, loads));
     if let Some((problem, help)) = refused {

@@ -32,7 +32,7 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit, of: Of<'_>) -> Result
     let rms_height_m = scale(campaign, surface)?.rms_height_m;
     let lattice = checked_lattice(of, &header, rms_height_m)?;
     let attraction = match of.options.attraction {
-        Rule::Bonded { nucleation, opening } => bonded(&params.material, &summits, (nucleation, opening))?,
+        Rule::Bonded { nucleation, opening } => bonded(&params.material, &summits, nucleation, opening)?,
         Rule::Range { .. } => Attraction::Range { range_m: lattice.range_m.unwrap_or_default() },
     };
     let (elements, shortest_wavelength_m) = (of.options, length_m / wavelengths);
@@ -59,7 +59,8 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit, of: Of<'_>) -> Result
 fn bonded(
     material: &Material,
     list: &[Summit],
-    (nucleation, opening): (Nucleation, Opening),
+    nucleation: Nucleation,
+    opening: Opening,
 ) -> Result<Attraction, StageError> {
     let nucleation_m = match nucleation {
         Nucleation::Touch => 0.0,
