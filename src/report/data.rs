@@ -17,7 +17,7 @@ const PYTHON: &str = concat!(
     "# All events with the parameters of their cycle. Cases that share a cycle have one row each in the \
      table cycles: keep one of them.\n",
     "cycles = pl.scan_parquet(\"statistics/cycles.parquet\")\
-     .drop(\"case_id\", \"realization\", \"method\").unique(\"cycle_id\")\n",
+     .drop(\"case_id\", \"realization\", \"method\", \"status\").unique(\"cycle_id\")\n",
     "events = pl.scan_parquet(\"cycles/*/events.parquet\").join(cycles, on=\"cycle_id\").collect()",
 );
 

@@ -1,7 +1,7 @@
 //! The table of avalanches.
 
 use super::event_kinds::OF_AVALANCHES;
-use super::statistics::CASE;
+use super::realizations::CASE;
 use super::{
     ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, index, join, real, text,
 };

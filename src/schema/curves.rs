@@ -1,6 +1,6 @@
 //! Tables of averaged paths and of the panels of figures.
 
-use super::statistics::CASE;
+use super::realizations::CASE;
 use super::{Table, count, index, real, text};
 
 /// Averaged loading and unloading paths.

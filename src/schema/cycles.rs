@@ -1,7 +1,7 @@
 //! The table of cycles, which joins tables of single cycles to cases.
 
 use super::parameters::PARAMETER_COLUMNS;
-use super::statistics::CASE;
+use super::realizations::CASE;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, join, text};
 
 const CYCLE: &[Column] = &[

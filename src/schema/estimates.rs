@@ -1,7 +1,7 @@
 //! The tables of analytical estimates: of a surface, and of a cycle.
 
+use super::realizations::shared;
 use super::run::CYCLE_CASE_ID;
-use super::statistics::shared;
 use super::{CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, flag, join, real};
 
 /// Columns of the table `realizations` that depend on the surface alone.

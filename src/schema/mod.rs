@@ -4,6 +4,7 @@
 //! module is independent of file formats.
 
 mod avalanches;
+mod cases;
 mod comparison;
 mod curves;
 mod cycles;
@@ -12,12 +13,13 @@ mod event_kinds;
 mod methods;
 mod parameter;
 mod parameters;
+mod realizations;
 mod render;
 mod run;
-mod statistics;
 
 pub use crate::physics::{EventCounts, EventGroup, EventKind, SpotStatus};
 pub use avalanches::AVALANCHES;
+pub use cases::CASES;
 pub use comparison::COMPARISON;
 pub use curves::{CURVES, PANELS};
 pub use cycles::CYCLES;
@@ -28,11 +30,11 @@ pub use event_kinds::{EVENT_COLOURS, EVENT_KINDS, event_kind};
 pub use methods::METHODS;
 pub use parameter::{CaseFacts, Parameter, ParameterValue};
 pub use parameters::{PARAMETERS, parameters_by_rank};
+pub use realizations::REALIZATIONS;
 pub use render::{
     DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json,
 };
 pub use run::{ADHESIONLESS, ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
-pub use statistics::{CASES, REALIZATIONS};
 
 /// Kind of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -155,7 +155,8 @@ fn reduce(
     let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
     let load_unit = at(&loading.load)? / at(&loading.load_n)?;
-    // The sum and the union of the discs are both in m²; A0 need not be known to scale the one like the other.
+    // The sum and the union of the discs are both in m²; A0 need not be known to scale the one like the
+    // other.
     let union = union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 });
     let per_area = |loss_j: f64| loss_j * area / input.energy_scale_j;
     let loss_dk = input.loss_dk_per_area_j.map(per_area);

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use hysteron::physics::cycle::soundness::LoopEnergy;
 use hysteron::schema::{EVENTS, EventCounts, STEPS, Table};
 use hysteron::stats::{CaseInput, CycleInput, Given, Value};
-use hysteron::store::parquet::write_table;
+use hysteron::store::parquet::{read_table, write_table};
 use hysteron::store::{Frame, FrameBuilder};
 
 /// One step: branch, max_load, load, area, penetration, work_j.
@@ -150,6 +151,27 @@ pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[
     }
 }
 
+/// Columns of a load reversal.
+fn at_load(steps: &Path, load: f64) -> Given {
+    let mut columns = given(&[("area_adhesionless", (5.0 * load).into()), ("area_adhesionless_small", (6.0 * load).into())]);
+    columns.extend(resolution_j(steps, load).map(|resolution_j| ("resolution_j".to_owned(), resolution_j.into())));
+    columns
+}
+
+/// Resolution of Θ by the rule of the stage `cycle`; nothing for a load that does not reverse.
+fn resolution_j(steps: &Path, max_load: f64) -> Option<f64> {
+    let frame = read_table(steps, &STEPS).unwrap();
+    let (works, lost) = (frame.f64("work_j").unwrap(), frame.f64("dissipated_j").unwrap());
+    let (loads, reversals) = (frame.f64_or_null("max_load").unwrap(), frame.f64_or_null("reversal_load").unwrap());
+    let turning = reversals.iter().position(|load| *load == Some(max_load))?;
+    let unloading: Vec<usize> = (0..works.len()).filter(|row| loads[*row] == Some(max_load)).collect();
+    let loss_j = works[turning] + works[*unloading.last()?];
+    let events_j = (0..=turning).chain(unloading.iter().copied()).map(|row| lost[row]).sum();
+    let on_unloading = unloading.iter().map(|row| works[turning] + works[*row]);
+    let work_j = works[..=turning].iter().copied().chain(on_unloading).map(f64::abs).fold(0.0, f64::max);
+    Some(LoopEnergy { loss_j, events_j, work_j }.resolution_j())
+}
+
 /// A finished cycle of a case.
 pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) -> CycleInput {
     CycleInput {
@@ -164,9 +186,7 @@ pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) 
         loss_dk_realised_per_area_j: Some(0.93 * dk_per_area_j),
         loss_dalvi_per_area_j: 3.0 * dk_per_area_j,
         loss_pinning_per_area_j: None,
-        at_max_load: [0.002, 0.004, 0.0071, 0.012, 0.015]
-            .map(|load| (load, given(&[("area_adhesionless", (5.0 * load).into()), ("area_adhesionless_small", (6.0 * load).into())])))
-            .to_vec(),
+        at_max_load: [0.002, 0.004, 0.0071, 0.012, 0.015].map(|load| (load, at_load(steps, load))).to_vec(),
         surface: given(&[
             ("summit_count", Value::Whole(4000)),
             ("summit_density_1_m2", 4e9.into()),

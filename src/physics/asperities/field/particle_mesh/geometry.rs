@@ -44,8 +44,8 @@ pub(super) struct Geometry {
     rough: Meshes<f32, INTERMEDIATE_WIDTH, INTERMEDIATE_ORDERS>,
 }
 
-/// Finds the pairs of all targets in chunks, in parallel if there are many; `find` is given the place of the first
-/// target of its chunk.
+/// Finds the pairs of all targets in chunks, in parallel if there are many; `find` is given the place of the
+/// first target of its chunk.
 fn find_in_chunks(
     all: &mut Vec<Pairs>,
     targets: &[usize],
