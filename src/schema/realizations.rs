@@ -38,6 +38,7 @@ const RESULTS: &[Column] = &[
          unloading; null with adhesion where no tension is resolved",
     )
     .or_null(),
+    real("pull_off_pressure_pa", "Pa", "Pull-off force over nominal area F_po/A0; null likewise").or_null(),
     real("area_at_max_load", "1", "Contact area A/A0 at load reversal, summed over the contact discs"),
     real(
         "area_union_at_max_load",
@@ -93,6 +94,29 @@ const RESULTS: &[Column] = &[
         "J",
         "Dissipated energy Θ: area of the loop of normal load over mean penetration; null \
          where it is negative, since it is not resolved",
+    )
+    .or_null(),
+    real("loss_j_m2", "J/m^2", "Dissipated energy per nominal area Θ/A0; null likewise").or_null(),
+    real(
+        "loss_over_adhesion",
+        "1",
+        "Dissipated energy over the work of adhesion of the nominal area Θ/(A0 Δγ); null likewise, and \
+         without adhesion",
+    )
+    .or_null(),
+    real(
+        "work_closing_j_m2",
+        "J/m^2",
+        "Work of adhesion of closing per nominal area: energy that the surfaces give from separation, by way \
+         of the load reversal, to zero load on the unloading path. work_opening_j_m2 - work_closing_j_m2 = \
+         loss_j_m2; null where Θ is not resolved",
+    )
+    .or_null(),
+    real(
+        "work_opening_j_m2",
+        "J/m^2",
+        "Work of adhesion of opening per nominal area: work from zero load on the unloading path to \
+         separation; null likewise",
     )
     .or_null(),
     real(

@@ -15,6 +15,7 @@ use crate::store::{Frame, FrameError};
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Branch {
     pub(super) step: Vec<i64>,
+    pub(super) approach_m: Vec<f64>,
     pub(super) load: Vec<f64>,
     pub(super) load_n: Vec<f64>,
     pub(super) least_load_n: Vec<f64>,
@@ -132,6 +133,7 @@ fn branch(frame: &Frame, rows: &[usize]) -> Result<Branch, FrameError> {
     let wholes = |name: &str| Ok(picked(&frame.i64(name)?, rows));
     Ok(Branch {
         step: wholes("step")?,
+        approach_m: reals("approach_m")?,
         load: reals("load")?,
         load_n: reals("load_n")?,
         least_load_n: reals("least_load_n")?,

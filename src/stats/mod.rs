@@ -4,6 +4,7 @@
 //! the realizations, so that the tables have the same bytes with any number of threads. This module is
 //! independent of the physics: the analytical estimates of each cycle are given to it.
 
+mod adhesion;
 mod avalanches;
 mod cases;
 mod cautions;

@@ -1,5 +1,6 @@
 //! One row per case, realization and load reversal.
 
+use super::adhesion::closing_and_opening_j;
 use super::cycle::{Branch, Cycle, fault};
 use super::events::{Events, Lost};
 use super::rows::{Rows, Value};
@@ -161,7 +162,12 @@ fn reduce(
     let per_area = |loss_j: f64| loss_j * area / input.energy_scale_j;
     let loss_dk = input.loss_dk_per_area_j.map(per_area);
     let share = |part: i64, of: i64| (of > 0).then(|| part as f64 / of as f64);
-    let columns: [(&str, Value); 29] = [
+    let area_m2 = input.surface.iter().find(|(name, _)| name == "nominal_area_m2");
+    let area_m2 = area_m2.and_then(|(_, value)| value.number());
+    let per_m2 = |energy_j: f64| area_m2.map(|area_m2| energy_j / area_m2);
+    let works = closing_and_opening_j(at_reversal, unloading).filter(|_| is_resolved);
+    let adhesion_j = input.loss_dalvi_per_area_j;
+    let columns: [(&str, Value); 34] = [
         ("realization", input.realization.into()),
         ("cycle_id", input.cycle_id.as_str().into()),
         ("surface_id", input.surface_id.as_str().into()),
@@ -170,11 +176,16 @@ fn reduce(
         // The turning step has the unit of load, as the quotient of its two columns.
         ("pull_off_load", pull_off.map(|pull_off| pull_off * load_unit).into()),
         ("pull_off_load_n", pull_off.into()),
+        ("pull_off_pressure_pa", pull_off.and_then(per_m2).into()),
         ("area_at_max_load", area.into()),
         ("area_union_at_max_load", union.into()),
         ("penetration_at_max_load", at(&loading.penetration)?.into()),
         ("loss", is_resolved.then_some(loss).into()),
         ("loss_j", is_resolved.then_some(loss_j).into()),
+        ("loss_j_m2", is_resolved.then_some(loss_j).and_then(per_m2).into()),
+        ("loss_over_adhesion", (is_resolved && adhesion_j > 0.0).then(|| loss_j / adhesion_j).into()),
+        ("work_closing_j_m2", works.and_then(|works| per_m2(works[0])).into()),
+        ("work_opening_j_m2", works.and_then(|works| per_m2(works[1])).into()),
         ("loss_dk", loss_dk.into()),
         ("loss_dk_realised", input.loss_dk_realised_per_area_j.map(per_area).into()),
         ("loss_pinning", input.loss_pinning_per_area_j.map(per_area).into()),
