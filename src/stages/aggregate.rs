@@ -1,4 +1,4 @@
-//! Stage aggregate: from the steps of all cycles to the tables over realizations.
+//! Stage aggregate: from the steps, events and estimates of all cycles to the tables over realizations.
 
 use super::cycle::lattice;
 use super::cycle_input::{SurfaceRow, cycle_input, of_failed};
