@@ -56,8 +56,8 @@
 //! | [`event_log::EventLog`] | events, work, and segments of the load |
 //! | [`checkpoint::Checkpoint`] | a path at a global solve, to go back to |
 //!
-//! An event kind is a variant of [`EventKind`](crate::EventKind) with its row (word, name, group, inverse), and
-//! an arm of `conditions`: the quantity and its limit. Its lateness, its due state and its place on the
+//! An event kind is a variant of [`EventKind`](crate::EventKind) with its row (word, name, group, inverse),
+//! and an arm of `conditions`: the quantity and its limit. Its lateness, its due state and its place on the
 //! solution curve follow from the condition. The compiler then requires the change of the local problem
 //! (`apply`), the status after it (`propagation`) and its columns (`schema::event_kinds`). It does not
 //! require:
