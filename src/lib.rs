@@ -11,17 +11,17 @@
 //!    `store`, into HDF5.
 //! 5. Stage extract: its asperities and its analytical estimates ([`physics::theory::estimates`]), into
 //!    Parquet.
-//! 6. Stage cycle: a method
-//!    ([`physics::cycle::Method`]) loads and unloads the surface and returns a [`physics::cycle::Cycle`] in
-//!    SI units, which one writer puts into tables. Boundary elements also write maps. The estimates of the
-//!    cycle are a further table.
+//! 6. Stage cycle: a method ([`physics::cycle::Method`]) loads and unloads the surface and returns a
+//!    [`physics::cycle::Cycle`] in SI units. One writer makes its steps, contacts, events and estimates;
+//!    each method adds its own files (load reversals and merged contacts; maps and adhesionless loading).
 //! 7. Stage aggregate: `stats` has the statistics over realizations, from the tables of the cycles and the
 //!    rows of estimates.
 //! 8. Stage report: `figures` draws the tables, `report` writes the page.
 //!
-//! Dependencies have one direction: `model` has none and [`schema`], which defines every table and column,
-//! reads only `model`; `physics` is a crate of its own that opens no file;
-//! `store` computes no result. `stages` alone joins them. `figures` and `report` read only tables.
+//! Dependencies have one direction: `physics` is a crate of its own that opens no file. [`model`] adds the
+//! parameters of a case to those of the physics. [`schema`] defines every table and column. `store`, [`spec`]
+//! and `campaign` use types and formulas of the physics; only `stages` runs cycles and writes their results.
+//! `figures` and `report` read only tables.
 //!
 //! The documentation for users is the [`guide`].
 

@@ -7,6 +7,14 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PhysicsError {
+    /// A number of a load reversal beyond those of the settings.
+    #[error("cannot unload from load reversal {reversal}: there are {count}")]
+    UnknownReversal {
+        /// The number, from 0.
+        reversal: usize,
+        /// Number of load reversals.
+        count: usize,
+    },
     /// A quantity outside the domain of its equation.
     #[error("cannot evaluate {action}: {quantity} is {}\nhelp: expected {allowed}", short(*value))]
     Domain {
@@ -107,8 +115,8 @@ pub enum LoopError {
     },
     /// Surfaces that stay in contact on unloading.
     #[error(
-        "the surfaces have not separated at the mean penetration {mean_penetration_m:e} m, 20 ranges of the \
-         heights away"
+        "the surfaces have not separated at the mean penetration {mean_penetration_m:e} m, where the search \
+         ends"
     )]
     Inseparable {
         /// Mean penetration Δ \[m\].

@@ -1,10 +1,9 @@
-//! Kinds of events of a loop, for both methods: word, name and group of each in one table, which all other
-//! code reads.
+//! Kinds of events of a loop, for both methods: word, name, group and inverse of each in one table.
 //!
-//! A further kind takes a variant with its row here, in
-//! [`EventKind`]. In the physics the compiler names the other places: its condition (`path::conditions`), its
-//! application (`path::apply`) and the status that it enters (`path::propagation`). Outside it takes one row
-//! in `schema::event_kinds`, with its columns and its colour: tables, statistics, report and explorer follow
+//! A further kind takes a variant with its row here. In the physics the compiler names the other places: its
+//! condition (`path::conditions`), its application (`path::apply`) and the status that it enters
+//! (`path::propagation`), see [`crate::asperities::path`]. Outside it takes one row in
+//! `schema::event_kinds`, with its columns and its colour: tables, statistics, report and explorer follow
 //! from it.
 
 use serde::{Deserialize, Serialize};

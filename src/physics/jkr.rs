@@ -173,9 +173,9 @@ impl Asperity {
     /// 2.
     ///
     /// # Deviations
-    /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`,
-    /// which is not the derivative of Eq 2: it vanishes before the true jump-off.
-    /// This function is correct also with Eq 9 as printed, since equilibria are solved with it.
+    /// The denominator of the paper's Eq 9 has `sqrt(πΔγ/(E*a))`, which is not the derivative of Eq 2: it
+    /// vanishes before the true jump-off. This function is correct also with Eq 9 as printed, since
+    /// equilibria are solved with it.
     #[must_use]
     pub fn penetration_slope(&self, a: f64) -> f64 {
         2.0 * a / self.radius - self.pull / (2.0 * a.sqrt())

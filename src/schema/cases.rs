@@ -2,7 +2,7 @@
 
 use super::event_kinds::event_kinds;
 use super::parameters::PARAMETER_COLUMNS;
-use super::realizations::CASE;
+use super::realizations::{CASE, MAX_LOAD};
 use super::{Column, Table, count, join, real, text};
 
 /// Mean, standard deviation and confidence interval of one result. All are null without a value; the last two
@@ -92,8 +92,6 @@ macro_rules! part_spreads {
 }
 
 event_kinds!(part_spreads);
-
-const MAX_LOAD: &[Column] = &[real("max_load", "1", "Normal load F_max/(E* A0) at the load reversal")];
 
 const SPREADS: &[&[Column]] = &[
     over_realizations!("pull_off_load", "1", "pull-off force F_po/(E* A0)", ""),

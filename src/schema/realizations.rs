@@ -9,7 +9,8 @@ pub(super) const CASE: &[Column] = &[
     text("sweep", "Names of the sweeps that contain the case, joined by +; empty for a spec without sweeps"),
 ];
 
-const MAX_LOAD: &[Column] = &[real("max_load", "1", "Normal load F_max/(E* A0) at the load reversal")];
+pub(super) const MAX_LOAD: &[Column] =
+    &[real("max_load", "1", "Normal load F_max/(E* A0) at the load reversal")];
 
 const RESULTS: &[Column] = &[
     REALIZATION,

@@ -33,6 +33,12 @@ pub fn mesh_number(work_length_m: f64, spacing_m: f64, range_m: f64) -> f64 {
     0.5 * (work_length_m * spacing_m).sqrt() / range_m
 }
 
+/// Range ρ that follows the grid \[m\], with `Δγ/E*` and the grid spacing \[m\].
+#[must_use]
+pub fn automatic_range(work_length_m: f64, spacing_m: f64) -> f64 {
+    RANGE * (work_length_m * spacing_m).sqrt()
+}
+
 impl ElementOptions {
     /// Grid points along the side of a square, whose side is given in shortest wavelengths.
     #[must_use]
@@ -48,7 +54,7 @@ impl ElementOptions {
         match self.attraction {
             Attraction::Bonded { .. } => None,
             Attraction::Range { range_m } => {
-                Some(range_m.unwrap_or_else(|| RANGE * (work_length_m * spacing_m).sqrt()))
+                Some(range_m.unwrap_or_else(|| automatic_range(work_length_m, spacing_m)))
             }
         }
     }

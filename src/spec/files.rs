@@ -5,7 +5,8 @@
 //! without the files. Its relative names start at its own folder; those of other specs start at the working
 //! directory or at the folder of the spec.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -119,7 +120,36 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) ->
         }
     }
     rename(&mut spec, &moved);
+    join_copies(&mut spec);
     faults.finish(Some(spec))
+}
+
+/// Joins cases that differ only in the folder of a file with the same name and content.
+fn join_copies(spec: &mut Spec) {
+    let mut names: HashMap<(String, Option<OsString>), String> = HashMap::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
+    let mut joined: Vec<Case> = Vec::new();
+    let mut moved = Vec::new();
+    for mut case in std::mem::take(&mut spec.cases) {
+        if let SurfaceSource::Measured(surface) = &mut case.params.surface
+            && let Some(digest) = spec.files.get(&surface.file)
+        {
+            let name = Path::new(&surface.file).file_name().map(ToOwned::to_owned);
+            let first = names.entry((digest.clone(), name)).or_insert_with(|| surface.file.clone());
+            surface.file.clone_from(first);
+        }
+        let place = *places.entry(format!("{:?}", case.params)).or_insert(joined.len());
+        moved.push(place);
+        match joined.get_mut(place) {
+            Some(known) => {
+                let new = case.sweeps.into_iter().filter(|sweep| !known.sweeps.contains(sweep));
+                known.sweeps.extend(new.collect::<Vec<_>>());
+            }
+            None => joined.push(case),
+        }
+    }
+    spec.cases = joined;
+    spec.auto_cases.iter_mut().for_each(|place| *place = moved.get(*place).copied().unwrap_or(*place));
 }
 
 /// Gives files other names in all places of a spec.

@@ -38,7 +38,9 @@ use crate::model::Method;
 pub use crate::physics::elements::PER_WAVELENGTH;
 pub use crate::text::quoted;
 pub use auto::Chooser;
-pub use elements::{FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, mesh_number};
+pub use elements::{
+    FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, automatic_range, mesh_number,
+};
 pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};
 pub use json_schema::{SCHEMA_FILE, json_schema};

@@ -67,8 +67,11 @@ impl Values {
             SurfaceSource::Generated(self.generated.clone())
         } else {
             let points_per_shortest_wavelength = self.generated.points_per_shortest_wavelength;
+            let default = MeasuredSurface::default().fast_axis;
+            let fast_axis = if self.measured.align_rows { self.measured.fast_axis } else { default };
             SurfaceSource::Measured(Box::new(MeasuredSurface {
                 points_per_shortest_wavelength,
+                fast_axis,
                 ..self.measured.clone()
             }))
         };

@@ -1,4 +1,4 @@
-//! Stage aggregate: from the steps of all cycles to the tables over realizations.
+//! Stage aggregate: from the steps, events and estimates of all cycles to the tables over realizations.
 
 use super::cycle::lattice;
 use super::cycle_input::{SurfaceRow, cycle_input, of_failed};
@@ -6,7 +6,7 @@ use super::done::{Clock, Outcome};
 use super::error::incomplete;
 use super::runner::{Context, Single, run_single};
 use super::{StageError, Tally, datapackage};
-use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, Unit};
+use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Choice;
 use crate::schema::{CaseFacts, PARAMETERS};
 use crate::spec::CaseParams;
@@ -20,7 +20,7 @@ use std::collections::HashMap;
 pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, StageError> {
     let (campaign, task) = (context.campaign, context.task);
     let clock = Clock::start();
-    let standings = campaign.cycle_standings(cycles_check);
+    let standings = with_surfaces(campaign, campaign.cycle_standings(cycles_check), cycles_check);
     // A run of several stages aggregates what it has computed.
     let partial = task.partial || task.from != task.until;
     if let (false, Some(error)) = (partial, unfinished(campaign, &standings)) {
@@ -35,6 +35,17 @@ pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, St
     let compute =
         || Ok((Outcome::of(write(campaign, &standings, &key)?), campaign.statistics_preimages(&standings)));
     run_single(single, context, task.check, || None, compute)
+}
+
+/// Status of the cycles, whose row in the statistics needs the row of estimates of their surface as well.
+fn with_surfaces(campaign: &Campaign, cycles: Vec<Standing>, check: Check) -> Vec<Standing> {
+    let of_surface = |unit: &SurfaceUnit| campaign.standing(&unit.asperities(), check);
+    let surfaces: Vec<Standing> = campaign.surfaces.par_iter().map(of_surface).collect();
+    let both = |(unit, standing): (&CycleUnit, Standing)| match standing {
+        Standing::Done => surfaces[unit.surface].clone(),
+        other => other,
+    };
+    campaign.cycles.iter().zip(cycles).map(both).collect()
 }
 
 /// The error of cycles that are neither done nor failed.

@@ -36,12 +36,12 @@ pub(super) fn files(campaign: &Campaign, done: &[bool]) -> Described {
             files.push((place.clone(), format!("{:#}\n", schema(table))));
         }
     }
-    resources
-        .extend(ids.surfaces.iter().map(|id| hdf5("surfaces", id, format!("surfaces/{id}.h5"), SURFACE)));
-    let maps = |id: &&str| {
-        let file = format!("cycles/{id}/maps.h5");
-        campaign.dir.join(&file).is_file().then(|| hdf5("maps", id, file, MAPS))
+    let there = |kind: &str, id: &str, file: String, description: &str| {
+        campaign.dir.join(&file).is_file().then(|| hdf5(kind, id, file, description))
     };
+    let surface = |id: &&str| there("surfaces", id, format!("surfaces/{id}.h5"), SURFACE);
+    resources.extend(ids.surfaces.iter().filter_map(surface));
+    let maps = |id: &&str| there("maps", id, format!("cycles/{id}/maps.h5"), MAPS);
     resources.extend(ids.cycles.iter().filter_map(maps));
     let package = json!({
         "generator": "hysteron",

@@ -1,4 +1,4 @@
-//! Warnings that follow from a spec and its measured surfaces, before anything is computed.
+//! Warnings before a run, from a spec and its measured surfaces.
 
 use super::cycle::announced;
 pub use super::outside::Outside;
@@ -31,7 +31,7 @@ impl Foreseen {
     }
 }
 
-/// Verdicts and warnings before any surface is made: `U_el/Δγ` and `U_1/Δγ` of the target spectra and of
+/// Verdicts and warnings before a run: `U_el/Δγ` and `U_1/Δγ` of the target spectra and of
 /// measured surfaces, grids of boundary elements, and the artefacts of measured surfaces. Cases without
 /// adhesion have no `U_el/Δγ`.
 #[must_use]

@@ -63,9 +63,7 @@ pub(super) fn verdicts(campaign: &Campaign, previews: &Previews) -> Vec<Verdict>
         };
         let of_generated =
             || cycle.filter(|_| preview.is_none()).and_then(|cycle| trial.error(campaign, unit, cycle));
-        let error = Some(())
-            .filter(|()| is_open())
-            .and_then(|()| error(&unit.case.params, preview).or_else(of_generated));
+        let error = if is_open() { error(&unit.case.params, preview).or_else(of_generated) } else { None };
         Verdict { error, ..verdict(unit, preview.and_then(Preview::known)) }
     };
     campaign.cases.iter().zip(surfaces).map(of).collect()

@@ -248,7 +248,9 @@ fn e2e_one_scan_under_two_names_is_one_cycle() {
     let made = Bench::new(SPEC);
     assert_eq!(code(&made.verb("run", &["--until", "generate"])), 0);
     let scan = fs::read_dir(made.out().join("surfaces")).unwrap().next().unwrap().unwrap().path();
-    let names = ["a.h5", "b.h5"].map(|name| made.folder.path().join(name));
+    // A copy of the same name in another folder is no case of its own.
+    fs::create_dir(made.folder.path().join("copies")).unwrap();
+    let names = ["a.h5", "b.h5", "copies/a.h5"].map(|name| made.folder.path().join(name));
     for name in &names {
         fs::copy(&scan, name).unwrap();
     }
@@ -258,9 +260,26 @@ fn e2e_one_scan_under_two_names_is_one_cycle() {
     assert_eq!(code(&run), 0, "{}", stderr(&run));
     let cycles = read_table(&bench.out().join("statistics/cycles.parquet"), &schema::CYCLES).unwrap();
     let ids = cycles.text("cycle_id").unwrap();
-    assert_eq!(cycles.text_or_null("surface_file").unwrap(), ["a.h5", "b.h5"].map(|name| Some(name.to_owned())));
+    let files = cycles.text_or_null("surface_file").unwrap();
+    assert!(files.iter().flatten().zip(["/a.h5", "b.h5"]).all(|(file, name)| file.ends_with(name)), "{files:?}");
     assert_eq!((ids.len(), ids[0]), (2, ids[1]));
     assert_eq!(cycles.text("status").unwrap(), ["done"; 2]);
+}
+
+#[test]
+fn e2e_a_damaged_row_of_estimates_is_made_anew_and_never_averaged() {
+    let bench = Bench::new(SPEC);
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    let rows: Vec<_> = fs::read_dir(bench.out().join("estimates")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let means = || fs::read(bench.out().join("statistics/cases.parquet")).unwrap();
+    let before = means();
+    // The row of another surface: a valid file with wrong numbers.
+    fs::copy(&rows[0], &rows[1]).unwrap();
+    fs::remove_dir_all(bench.out().join("statistics")).unwrap();
+    let aggregate = bench.verb("aggregate", &[]);
+    assert!(code(&aggregate) == 1 && stderr(&aggregate).contains("\nhelp: "), "{}", stderr(&aggregate));
+    assert_eq!(code(&bench.verb("run", &["--until", "aggregate"])), 0);
+    assert!(means() == before);
 }
 
 #[test]

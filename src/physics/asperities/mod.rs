@@ -2,8 +2,8 @@
 //! a material and options.
 //!
 //! [`Asperities::new`] finds the asperities; [`Asperities::run`](crate::cycle::Method::run) loads and unloads
-//! them. Asperities are JKR contacts that interact through the elastic displacement
-//! [`field`] of the half-space. The algorithm is at the head of [`path`].
+//! them. Asperities are JKR contacts that interact through the elastic displacement [`field`] of the
+//! half-space. The algorithm is at the head of [`path`].
 
 mod constants;
 pub mod contact;
@@ -131,7 +131,9 @@ impl Method for Asperities {
     }
 
     fn unload_from(&self, reversal: usize, state: State) -> Result<Cycle, PhysicsError> {
-        let max_load = self.settings.max_loads.get(reversal).copied().unwrap_or_default();
+        let loads = &self.settings.max_loads;
+        let unknown = PhysicsError::UnknownReversal { reversal, count: loads.len() };
+        let max_load = *loads.get(reversal).ok_or(unknown)?;
         if self.problem.is_adhesionless() {
             // The state at the reversal does not hold the loading path, which the unloading repeats.
             let settings = Settings { max_loads: vec![max_load], ..self.settings.clone() };

@@ -1,4 +1,6 @@
-//! Numerical choices of the asperity model: they decide on cost and digits, and on nothing else.
+//! Numerical choices of the asperity model: tolerances, limits of effort and rules of the search.
+//!
+//! They are not part of the physical model; some change Θ by up to a few per cent, as stated.
 //!
 //! Each field states its effect as far as it was measured: means of Θ, F_po and the area at `Δγ = 0.07 J/m²`
 //! (see `tests/benches/notes.md`).

@@ -48,7 +48,7 @@ pub trait Method {
     /// there, numbered from 0.
     ///
     /// # Errors
-    /// If the surfaces do not separate.
+    /// An unknown load reversal; surfaces that do not separate.
     fn unload_from(&self, reversal: usize, state: Self::State) -> Result<Cycle<Self::State>, PhysicsError>;
 
     /// Name and number of the unknowns, for the record of the effort.

@@ -146,7 +146,7 @@ pub struct Event {
     pub cause: EventKind,
     /// Mean penetration Δ \[m\].
     pub mean_penetration_m: f64,
-    /// Number of its avalanche, counted along the branch.
+    /// Number of its avalanche, increasing along the branch.
     pub avalanche: u64,
     /// Load and area before.
     pub before: Totals,
@@ -166,12 +166,22 @@ pub enum Site {
 }
 
 impl Event {
-    /// Words of the kind and of the cause in the tables.
+    /// Word of the kind in the tables.
     #[must_use]
-    pub fn words(&self) -> [&'static str; 2] {
+    pub fn word(&self) -> &'static str {
+        self.word_of(self.kind)
+    }
+
+    /// Word of the cause in the tables.
+    #[must_use]
+    pub fn cause_word(&self) -> &'static str {
+        self.word_of(self.cause)
+    }
+
+    fn word_of(&self, kind: EventKind) -> &'static str {
         match self.site {
-            Site::Asperity(_) => [self.kind, self.cause].map(EventKind::word),
-            Site::Region(change) => [change.word(); 2],
+            Site::Asperity(_) => kind.word(),
+            Site::Region(change) => change.word(),
         }
     }
 

@@ -1,9 +1,9 @@
 //! Boundary elements of a height map, in SI units: grid, law and settings from a surface, a material and
 //! options.
 //!
-//! [`Elements::new`] has what decides on the accuracy of a cycle; [`Elements::run`] loads and unloads. The
-//! solver itself is in the modules of this folder. Its lengths are in grid spacings
-//! `dx`, stresses in E\*, energies in `E* dx³`; [`Units`] has their values in SI units.
+//! [`Elements::new`] sets grid, law and accuracy; [`Elements::run`] loads and unloads. The solver is in the
+//! modules of this folder. Its unit of length is the grid spacing `dx`, of stress E\*, of energy `E* dx³`;
+//! [`Units`] converts them to SI units.
 
 mod constants;
 pub mod equilibrium;

@@ -1,4 +1,6 @@
-//! Numerical choices of boundary elements: they decide on cost and digits, and on nothing else.
+//! Numerical choices of boundary elements: tolerances, limits of effort and rules of the search.
+//!
+//! They are not part of the physical model; some change Θ by up to a few per cent, as stated.
 //!
 //! Each field states its effect as far as it was measured, at `Δγ = 0.07 J/m²` (see
 //! `tests/benches/notes.md`).

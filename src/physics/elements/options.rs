@@ -21,7 +21,8 @@ pub enum Attraction {
     },
 }
 
-/// Options of a cycle by boundary elements, with those of the program as default.
+/// Options of a cycle by boundary elements. The defaults are those of the program, but for the opening of
+/// contact: here from its edges only, in the program at the strength `Δγ/ε`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// Grid points along a side of the periodic square, mirror images included.

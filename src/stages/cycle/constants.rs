@@ -1,4 +1,4 @@
-//! Numerical choices of a cycle that depend on its case, and its checkpoints.
+//! Limits and checkpoints of cycles, and constants of the estimates before a run.
 
 use super::KEPT_FOR;
 use super::asperities::{MOST_STEPS, OF_ASPERITIES};

@@ -1,16 +1,16 @@
-//! Calls of the pipeline to the method of a case. The tables, the tasks and their checkpoints are the same
-//! for all methods.
+//! The match of the stages on the method of a case. `steps`, `contacts`, `events`, `estimates` and the
+//! checkpoints are common to all methods.
 //!
-//! A stub of a third method took, outside its own folders, its word in `physics/model.rs`, its options in
-//! `model/case.rs`, their keys in `spec/keys.rs` and `spec/values.rs`, their columns in
-//! `schema/parameters.rs`, the inputs of its key in `campaign/key_inputs.rs`, and one arm in each function
-//! here. The compiler names all of them but keys and columns. A key is read in `spec`, hashed in `campaign`
-//! and shown in a column, and none of these may depend on the stages.
+//! A further method has its word in `physics/model.rs`, its options in `model/case.rs`, their keys in
+//! `spec/keys.rs` and `spec/values.rs`, their columns in `schema/parameters.rs`, the inputs of its key in
+//! `campaign/key_inputs.rs`, and an arm in each function here; the compiler names all of them but keys and
+//! columns. These are more than four files since a key is read in `spec`, hashed in `campaign` and shown in a
+//! column, and none of these may depend on the stages.
 
 use super::super::StageError;
 use super::super::cost::Cost;
 use super::super::previews::Known;
-use super::elements::{Lattice, Of, Square};
+use super::elements::{ElementsCase, Lattice, Square};
 use super::{Computed, CycleTask, asperities, elements};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::MethodOptions;
@@ -41,7 +41,7 @@ pub fn unload_again(campaign: &Campaign, unit: &CycleUnit, max_load: f64) -> Res
 pub(in crate::stages) fn lattice(params: &CaseParams, square: Option<Square>) -> Option<Lattice> {
     match &params.method {
         MethodOptions::Asperities(_) => None,
-        MethodOptions::Elements(options) => Of { params, options }.lattice(square),
+        MethodOptions::Elements(options) => ElementsCase { params, options }.lattice(square),
     }
 }
 
@@ -53,7 +53,7 @@ pub(in crate::stages) fn cost(
 ) -> Option<Cost> {
     match &params.method {
         MethodOptions::Asperities(options) => asperities::cost(params, options, known),
-        MethodOptions::Elements(options) => Of { params, options }.cost(known, ratio),
+        MethodOptions::Elements(options) => ElementsCase { params, options }.cost(known, ratio),
     }
 }
 
@@ -62,6 +62,6 @@ pub(in crate::stages) fn cost(
 pub(in crate::stages) fn refusal(params: &CaseParams, known: Option<&Known>) -> Option<StageError> {
     match &params.method {
         MethodOptions::Asperities(options) => asperities::refusal(params, options, known?),
-        MethodOptions::Elements(options) => Of { params, options }.refusal(known),
+        MethodOptions::Elements(options) => ElementsCase { params, options }.refusal(known),
     }
 }

@@ -122,7 +122,7 @@ impl<'a> Tables<'a> {
             .i64("step", events.iter().map(|e| e.step as i64))
             .text("branch", events.iter().map(|e| self.step(e.step).branch.word()))
             .f64("max_load", events.iter().map(|e| self.step(e.step).max_load))
-            .text("kind", events.iter().map(|e| e.words()[0]))
+            .text("kind", events.iter().map(|e| e.word()))
             .i64("asperity_id", events.iter().map(|e| e.asperity().map(|asperity| asperity as i64)))
             .f64("approach_m", each(|e| e.mean_penetration_m))
             .i64("avalanche_id", self.avalanches())
@@ -133,7 +133,7 @@ impl<'a> Tables<'a> {
             .f64("energy_lost_j", each(|e| e.energy_lost_j))
             .text("method", self.method(events.len()))
             .text_or_null("status", events.iter().map(|e| e.status.map(SpotStatus::word)))
-            .text("cause", events.iter().map(|e| e.words()[1]))
+            .text("cause", events.iter().map(|e| e.cause_word()))
             .build()?)
     }
 

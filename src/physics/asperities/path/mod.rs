@@ -56,18 +56,16 @@
 //! | [`event_log::EventLog`] | events, work, and segments of the load |
 //! | [`checkpoint::Checkpoint`] | a path at a global solve, to go back to |
 //!
-//! An event kind is added as a line of
-//! [`crate::asperities::contact::transition`] (name, status after it, inverse) and one of `conditions`: the
-//! quantity and its limit. Its lateness, its due state and its place on the solution curve follow from the
-//! condition. The compiler then requires the change of the local problem
-//! (`apply`), the status after it (`propagation`) and its inverse (`EventKind::reversed`). It does not
+//! An event kind is a variant of [`EventKind`](crate::EventKind) with its row (word, name, group, inverse),
+//! and an arm of `conditions`: the quantity and its limit. Its lateness, its due state and its place on the
+//! solution curve follow from the condition. The compiler then requires the change of the local problem
+//! (`apply`), the status after it (`propagation`) and its columns (`schema::event_kinds`). It does not
 //! require:
 //!
 //! - the asperities for which the event is looked for: `triggers`, `expectation`, and `overtaken` during a
 //!   relaxation;
 //! - pairs of kinds that undo each other: `Transition::returns`;
-//! - the offset of the potential if a load law changes: `Problem::self_potential`;
-//! - the columns that count events: `schema::avalanches` and `schema::run`.
+//! - the offset of the potential if a load law changes: `Problem::self_potential`.
 
 mod apply;
 mod arrival;

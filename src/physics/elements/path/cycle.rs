@@ -43,6 +43,10 @@ pub fn unload_from(
     reversal: usize,
     turning: &Turning,
 ) -> Result<Cycle, PhysicsError> {
+    let count = settings.max_loads.len();
+    if reversal >= count {
+        return Err(PhysicsError::UnknownReversal { reversal, count });
+    }
     rayon::scope(|_| {
         let mut run = CycleRun::new(problem, settings, None)?;
         run.at.cycle = Cycle { turning: vec![turning.clone(); reversal + 1], ..Cycle::default() };

@@ -30,7 +30,7 @@ use std::path::Path;
 
 /// A case of the asperity model.
 #[derive(Clone, Copy)]
-struct Of<'a> {
+struct AsperityCase<'a> {
     params: &'a CaseParams,
     options: &'a AsperityOptions,
 }
@@ -38,12 +38,17 @@ struct Of<'a> {
 /// The error by which cycles on a measured surface fail; nothing for one whose asperities are not known.
 pub(super) fn refusal(params: &CaseParams, options: &AsperityOptions, known: &Known) -> Option<StageError> {
     let scale = Scale { length_m: known.header.length_m, rms_height_m: known.header.rms_height_m };
-    checked(Of { params, options }, scale, &known.found()?.found.list).err()
+    checked(AsperityCase { params, options }, scale, &known.found()?.found.list).err()
 }
 
 /// The asperity model of a case on the asperities of a table.
-fn method(of: Of<'_>, scale: Scale, summits: &[Summit], max_loads: &[f64]) -> Result<Asperities, StageError> {
-    let Of { params, options } = of;
+fn method(
+    of: AsperityCase<'_>,
+    scale: Scale,
+    summits: &[Summit],
+    max_loads: &[f64],
+) -> Result<Asperities, StageError> {
+    let AsperityCase { params, options } = of;
     let rules = Rules {
         interaction: options.interaction,
         boundary: options.boundary,
@@ -72,7 +77,7 @@ fn method(of: Of<'_>, scale: Scale, summits: &[Summit], max_loads: &[f64]) -> Re
 ///
 /// # Errors
 /// Asperities, a Tabor parameter or a number of steps that the asperity model refuses.
-fn checked(of: Of<'_>, scale: Scale, summits: &[Summit]) -> Result<Asperities, StageError> {
+fn checked(of: AsperityCase<'_>, scale: Scale, summits: &[Summit]) -> Result<Asperities, StageError> {
     let method = method(of, scale, summits, &of.params.cycle.max_load)?;
     step_count::bound(&method.problem, summits, of)?;
     Ok(method)
@@ -82,7 +87,7 @@ pub(super) fn run(task: &CycleTask<'_>, options: &AsperityOptions) -> Result<Com
     let (campaign, unit, params) = (task.campaign, task.unit, task.params());
     let surface = &campaign.surfaces[unit.surface];
     let summits = read_summits(&campaign.asperities_path(surface))?;
-    let method = checked(Of { params, options }, scale(campaign, surface)?, &summits)?;
+    let method = checked(AsperityCase { params, options }, scale(campaign, surface)?, &summits)?;
     let cycle = task.follow(&method)?;
     let (of, problem) = (Identity::of(campaign, unit), &method.problem);
     let tables = vec![turning(of, &cycle, problem, &params.cycle.max_load)?, merged(of, &cycle)?];
@@ -116,7 +121,7 @@ pub(super) fn unload_again(
     let params = &campaign.cases[unit.case].case.params;
     let summits = read_summits(&campaign.asperities_path(&campaign.surfaces[unit.surface]))?;
     let method = method(
-        Of { params, options },
+        AsperityCase { params, options },
         scale(campaign, &campaign.surfaces[unit.surface])?,
         &summits,
         &[max_load],

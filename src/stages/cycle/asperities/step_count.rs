@@ -1,6 +1,6 @@
 //! Number of steps of a cycle, estimated before it begins.
 
-use super::Of;
+use super::AsperityCase;
 use crate::physics::asperities::contact::Problem;
 use crate::physics::surface::summits::Summit;
 use crate::stages::StageError;
@@ -18,7 +18,7 @@ const HALVINGS: u32 = 20;
 ///
 /// The penetrations at its loads are those of Hertz contacts without interaction and adhesion, which carry
 /// more load at the same penetration than the contact does. So the number of steps is estimated from below.
-pub(super) fn bound(problem: &Problem, summits: &[Summit], of: Of<'_>) -> Result<(), StageError> {
+pub(super) fn bound(problem: &Problem, summits: &[Summit], of: AsperityCase<'_>) -> Result<(), StageError> {
     let (params, approach_step) = (of.params, of.options.approach_step);
     let loads = &params.cycle.max_load;
     let branches = loads.len() as f64 + 1.0;

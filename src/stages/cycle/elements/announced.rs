@@ -2,7 +2,7 @@
 
 use super::super::super::cost::Cost;
 use super::super::super::outside::{Outside, in_words, interval};
-use super::Of;
+use super::ElementsCase;
 use super::cost::{LONG, cost};
 use super::lattice::Lattice;
 use super::slow_grid::slow_grids;
@@ -21,7 +21,7 @@ const LONG_LOOP: Caution = Caution {
 /// A case of boundary elements with the cost of its cycles and its `U_el/Δγ`.
 struct Costly<'a> {
     unit: &'a CaseUnit,
-    of: Of<'a>,
+    of: ElementsCase<'a>,
     cost: Cost,
     ratio: Option<f64>,
 }
@@ -33,7 +33,12 @@ pub(in crate::stages) fn announced(
 ) -> Vec<Outside> {
     let costly = campaign.cases.iter().zip(costs).filter_map(|(unit, (cost, ratio))| {
         let params = &unit.case.params;
-        Some(Costly { unit, of: Of { params, options: params.elements()? }, cost: (*cost)?, ratio: *ratio })
+        Some(Costly {
+            unit,
+            of: ElementsCase { params, options: params.elements()? },
+            cost: (*cost)?,
+            ratio: *ratio,
+        })
     });
     let all: Vec<Costly<'_>> = costly.collect();
     let found = [coarse(&all), many_steps(campaign), slow_grids(campaign), long_loops(&all)];
@@ -49,7 +54,8 @@ fn coarse(all: &[Costly<'_>]) -> Option<Outside> {
 fn many_steps(campaign: &Campaign) -> Option<Outside> {
     let steps = |unit: &CaseUnit| {
         let params = &unit.case.params;
-        let (of, surface) = (Of { params, options: params.elements()? }, params.surface.generated()?);
+        let (of, surface) =
+            (ElementsCase { params, options: params.elements()? }, params.surface.generated()?);
         of.range_steps(&Lattice::of_generated(of, surface), surface.rms_height_m)
             .filter(|steps| *steps > MANY_RANGE_STEPS)
     };

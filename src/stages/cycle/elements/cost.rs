@@ -21,7 +21,7 @@ pub(super) fn cost(lattice: &Lattice, loads: usize, ratio: Option<f64>, range_st
     let [square, cube] = OF_POINTS;
     let plain = square * n.powi(2) + cube * n.powi(3);
     let steps =
-        Numerics::default().refinement(ratio.unwrap_or_default()).0.powf(OF_STEPS) + range_steps / STEPS;
+        Numerics::default().refinement(ratio.unwrap_or(f64::INFINITY)).0.powf(OF_STEPS) + range_steps / STEPS;
     Cost {
         points: lattice.points as u64,
         per_wavelength: lattice.per_wavelength,

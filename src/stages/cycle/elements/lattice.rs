@@ -1,7 +1,7 @@
 //! Grid of boundary elements, and its memory.
 
 use super::super::super::StageError;
-use super::Of;
+use super::ElementsCase;
 use crate::model::GeneratedSurface;
 use crate::physics::PhysicsError;
 use crate::physics::elements::memory_bytes;
@@ -53,7 +53,7 @@ impl Square {
 
 impl Lattice {
     /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
-    fn of(of: Of<'_>, length_m: f64, wavelengths: f64) -> Self {
+    fn of(of: ElementsCase<'_>, length_m: f64, wavelengths: f64) -> Self {
         let points = of.options.grid(wavelengths);
         let spacing_m = length_m / f64::from(points);
         Self {
@@ -65,12 +65,12 @@ impl Lattice {
     }
 
     /// The grid of a case on its generated surface.
-    pub(super) fn of_generated(of: Of<'_>, surface: &GeneratedSurface) -> Self {
+    pub(super) fn of_generated(of: ElementsCase<'_>, surface: &GeneratedSurface) -> Self {
         Self::of(of, surface.length_m, f64::from(surface.magnification))
     }
 
     /// The grid of a case on a measured surface.
-    pub(super) fn of_measured(of: Of<'_>, square: Square) -> Self {
+    pub(super) fn of_measured(of: ElementsCase<'_>, square: Square) -> Self {
         let (length_m, wavelengths) = square.extent();
         Self::of(of, length_m, wavelengths)
     }
@@ -78,7 +78,7 @@ impl Lattice {
 
 /// The grid of a case on a surface with this header and rms height \[m\], checked.
 pub(super) fn checked_lattice(
-    of: Of<'_>,
+    of: ElementsCase<'_>,
     header: &SurfaceHeader,
     rms_height_m: f64,
 ) -> Result<Lattice, StageError> {

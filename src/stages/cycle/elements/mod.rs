@@ -30,12 +30,12 @@ use std::path::{Path, PathBuf};
 
 /// A case of boundary elements.
 #[derive(Clone, Copy)]
-pub(super) struct Of<'a> {
+pub(super) struct ElementsCase<'a> {
     pub(super) params: &'a CaseParams,
     pub(super) options: &'a ElementOptions,
 }
 
-impl Of<'_> {
+impl ElementsCase<'_> {
     /// Grid of a case on a generated surface, or on the square of a measured one; nothing without it.
     pub(super) fn lattice(self, square: Option<Square>) -> Option<Lattice> {
         match &self.params.surface {
@@ -79,7 +79,7 @@ impl Of<'_> {
 pub(super) fn run(task: &CycleTask<'_>, options: &ElementOptions) -> Result<Computed, StageError> {
     let (campaign, unit) = (task.campaign, task.unit);
     let Setup { method, summits, per_wavelength } =
-        setup(campaign, unit, Of { params: task.params(), options })?;
+        setup(campaign, unit, ElementsCase { params: task.params(), options })?;
     let cycle = task.follow(&method)?;
     let (size, units, dir) = (method.size(), method.units, campaign.cycle_dir(unit));
     let contact_gap_m = method.problem.law.contact_gap() * units.spacing_m();
@@ -182,7 +182,7 @@ pub(super) fn unload_again(
     max_load: f64,
 ) -> Result<Cycle<()>, StageError> {
     let params = &campaign.cases[unit.case].case.params;
-    let Setup { method, .. } = setup(campaign, unit, Of { params, options })?;
+    let Setup { method, .. } = setup(campaign, unit, ElementsCase { params, options })?;
     let path = turning_path(&campaign.cycle_dir(unit));
     let states: Option<Vec<Turning>> =
         read_halfway(&path, &unit.key).and_then(|bytes| postcard::from_bytes(&bytes).ok());

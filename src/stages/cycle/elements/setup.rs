@@ -3,7 +3,7 @@
 use super::super::super::StageError;
 use super::super::super::extract::read_summits;
 use super::super::super::surface::scale;
-use super::Of;
+use super::ElementsCase;
 use super::lattice::{Lattice, Square, checked_lattice};
 use crate::campaign::{Campaign, CycleUnit};
 use crate::model::{Attraction as Rule, Material, Nucleation, Opening};
@@ -12,6 +12,7 @@ use crate::physics::elements::{Attraction, Elements, Options};
 use crate::physics::jkr::Asperity;
 use crate::physics::surface::HeightMap;
 use crate::physics::surface::summits::Summit;
+use crate::spec::automatic_range;
 use crate::store::hdf5::read_surface;
 
 /// The surface of a cycle on the grid of its case.
@@ -23,7 +24,11 @@ pub(super) struct Setup {
 }
 
 /// Reads the surface of a cycle and sets the method up.
-pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit, of: Of<'_>) -> Result<Setup, StageError> {
+pub(super) fn setup(
+    campaign: &Campaign,
+    unit: &CycleUnit,
+    of: ElementsCase<'_>,
+) -> Result<Setup, StageError> {
     let params = of.params;
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
@@ -33,7 +38,11 @@ pub(super) fn setup(campaign: &Campaign, unit: &CycleUnit, of: Of<'_>) -> Result
     let lattice = checked_lattice(of, &header, rms_height_m)?;
     let attraction = match of.options.attraction {
         Rule::Bonded { nucleation, opening } => bonded(&params.material, &summits, nucleation, opening)?,
-        Rule::Range { .. } => Attraction::Range { range_m: lattice.range_m.unwrap_or_default() },
+        Rule::Range { range_m } => {
+            let spacing_m = length_m / lattice.points as f64;
+            let automatic = || automatic_range(params.material.adhesion_length_m(), spacing_m);
+            Attraction::Range { range_m: range_m.unwrap_or_else(automatic) }
+        }
     };
     let (elements, shortest_wavelength_m) = (of.options, length_m / wavelengths);
     let options = Options {
