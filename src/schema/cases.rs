@@ -98,6 +98,7 @@ const SPREADS: &[&[Column]] = &[
     over_realizations!("area_at_max_load", "1", "contact area A/A0 at load reversal", ""),
     over_realizations!("penetration_at_max_load", "1", "mean penetration Δ/h_rms at load reversal", ""),
     over_realizations!("loss", "1", "dissipated energy Θ/(E* A0 h_rms) of the loop", ""),
+    over_realizations!("pull_off_load_n", "N", "pull-off force F_po", ""),
     over_realizations!("pull_off_pressure_pa", "Pa", "pull-off force over nominal area F_po/A0", ""),
     over_realizations!("loss_j_m2", "J/m^2", "dissipated energy per nominal area Θ/A0", ""),
     over_realizations!("loss_over_adhesion", "1", "dissipated energy Θ/(A0 Δγ)", ""),

@@ -26,9 +26,29 @@ A: contact area at F_max over A0. Θ: dissipated energy over E* A0 h_rms.
 
 const REFERENCE: &str = "*: reference case. change: relative to it, where all realizations finished.";
 
-/// Heading, and column of the table `cases` without its ending.
-const RESULTS: [(&str, &str); 4] =
-    [("A", "area_at_max_load"), ("F_po", "pull_off_load"), ("Θ", "loss"), ("Θ/Θ_DK", "loss_ratio_dk")];
+/// Four results of a row: heading, column of the table `cases` without its ending, and factor to the unit of
+/// the heading.
+type Results = [(&'static str, &'static str, f64); 4];
+
+/// Results without units.
+const RESULTS: Results = [
+    ("A", "area_at_max_load", 1.0),
+    ("F_po", "pull_off_load", 1.0),
+    ("Θ", "loss", 1.0),
+    ("Θ/Θ_DK", "loss_ratio_dk", 1.0),
+];
+
+/// Results per nominal area, in the units of experiments: kPa and mJ/m².
+const PER_AREA: Results = [
+    ("F_po", "pull_off_pressure_pa", 1e-3),
+    ("Θ", "loss_j_m2", 1e3),
+    ("w_closing", "work_closing_j_m2", 1e3),
+    ("w_opening", "work_opening_j_m2", 1e3),
+];
+
+const PER_AREA_HEADER: &str = "\
+Per nominal area: F_po [kPa]; Θ, w_closing and w_opening [mJ/m²], the works of
+adhesion from separation to zero load and back, w_opening - w_closing = Θ.";
 
 /// Magnitude from which numbers are not written in full.
 const LONG: f64 = 1e5;
@@ -92,18 +112,11 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
         lines.push(String::new());
         let title = if name.is_empty() { "case".to_owned() } else { name.clone() };
         let rows = listing_of(cases, &name)?;
-        let mut columns = Vec::new();
-        for ((heading, name), width) in RESULTS.into_iter().zip(&WIDTHS[3..]) {
-            let cells =
-                rows.iter().map(|listed| mean_sd(cases, name, listed.row)).collect::<Result<Vec<_>, _>>()?;
-            columns.push((heading, Notation::of(heading, &cells, width - 1)));
-        }
-        let headings = columns.iter().map(|(heading, notation)| notation.heading(heading)).collect();
-        lines.extend(labelled(&title, ["F_max".to_owned(), "n".to_owned()], four(headings)));
-        for listed in &rows {
-            compared |= listed.is_reference;
-            lines.extend(case_lines(cases, listed, &columns)?);
-        }
+        compared |= rows.iter().any(|listed| listed.is_reference);
+        lines.extend(table(cases, &rows, &title, &RESULTS)?);
+        lines.push(String::new());
+        lines.extend(PER_AREA_HEADER.lines().map(str::to_owned));
+        lines.extend(table(cases, &rows, &title, &PER_AREA)?);
         let rows: Vec<usize> = rows.iter().map(|listed| listed.row).collect();
         lines.extend(
             verdicts(cases, methods, &rows)?
@@ -119,6 +132,22 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
     });
     lines.push(String::new());
     Ok(format!("{}\n{}", head.join("\n"), lines.join("\n")))
+}
+
+/// The rows of a sweep under their headings.
+fn table(cases: &Frame, rows: &[Listed], title: &str, results: &Results) -> Result<Vec<String>, StatsError> {
+    let mut columns = Vec::new();
+    for ((heading, name, factor), width) in results.iter().zip(&WIDTHS[3..]) {
+        let cells = rows.iter().map(|listed| mean_sd(cases, name, *factor, listed.row));
+        let cells = cells.collect::<Result<Vec<_>, _>>()?;
+        columns.push((*heading, Notation::of(heading, &cells, width - 1)));
+    }
+    let headings = columns.iter().map(|(heading, notation)| notation.heading(heading)).collect();
+    let mut lines = labelled(title, ["F_max".to_owned(), "n".to_owned()], four(headings));
+    for listed in rows {
+        lines.extend(case_lines(cases, listed, results, &columns)?);
+    }
+    Ok(lines)
 }
 
 /// The verdicts on all sweeps, each with the name of its sweep if there are several.
@@ -140,13 +169,17 @@ fn value(cases: &Frame, name: &str, row: usize) -> Result<Option<f64>, StatsErro
     Ok(cases.f64_or_null(name)?.get(row).copied().flatten())
 }
 
-fn mean_sd(cases: &Frame, name: &str, row: usize) -> Result<MeanSd, StatsError> {
-    Ok((value(cases, &format!("{name}_mean"), row)?, value(cases, &format!("{name}_sd"), row)?))
+fn mean_sd(cases: &Frame, name: &str, factor: f64, row: usize) -> Result<MeanSd, StatsError> {
+    let scaled = |ending: &str| -> Result<Option<f64>, StatsError> {
+        Ok(value(cases, &format!("{name}_{ending}"), row)?.map(|value| factor * value))
+    };
+    Ok((scaled("mean")?, scaled("sd")?))
 }
 
 fn case_lines(
     cases: &Frame,
     listed: &Listed,
+    of: &Results,
     columns: &[(&str, Notation)],
 ) -> Result<Vec<String>, StatsError> {
     let count = |name: &str, row: usize| -> Result<i64, StatsError> {
@@ -163,10 +196,11 @@ fn case_lines(
         _ => None,
     };
     let (mut results, mut changes) = (Vec::new(), Vec::new());
-    for (((_, name), (_, notation)), width) in RESULTS.into_iter().zip(columns).zip(&WIDTHS[3..]) {
-        let own = mean_sd(cases, name, listed.row)?;
+    for (((_, name, factor), (_, notation)), width) in of.iter().zip(columns).zip(&WIDTHS[3..]) {
+        let own = mean_sd(cases, name, *factor, listed.row)?;
         results.push(notation.cell(own, width - 1));
-        let other = reference.map(|row| mean_sd(cases, name, row)).transpose()?.and_then(|(mean, _)| mean);
+        let other = reference.map(|row| mean_sd(cases, name, *factor, row)).transpose()?;
+        let other = other.and_then(|(mean, _)| mean);
         changes.push(own.0.zip(other).and_then(|(own, other)| change(own, other)));
     }
     let label = listed.label.replace(" = ", "=") + if listed.is_reference { "*" } else { "" };

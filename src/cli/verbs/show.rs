@@ -17,8 +17,10 @@ use indicatif::HumanBytes;
 use serde_json::{Map, Value, json};
 
 /// Results in the printed text; JSON has all columns.
-const RESULTS: [&str; 10] = [
+const RESULTS: [&str; 16] = [
     "pull_off_load",
+    "pull_off_load_n",
+    "pull_off_pressure_pa",
     "area_at_max_load",
     "penetration_at_max_load",
     "contact_count_at_max_load",
@@ -26,6 +28,10 @@ const RESULTS: [&str; 10] = [
     "summit_count",
     "loss",
     "loss_j",
+    "loss_j_m2",
+    "loss_over_adhesion",
+    "work_closing_j_m2",
+    "work_opening_j_m2",
     "loss_ratio_dk",
     "audit_gap",
 ];
