@@ -7,7 +7,9 @@ use crate::stats::{Difference, FEW, Listed, StatsError, difference_of, singles};
 use maud::{Markup, html};
 
 /// Heading, column of the table `cases` without its ending, and true if the quantity cannot be negative.
-const RESULTS: [(&str, &str, bool); 7] = [
+type Quantity = (&'static str, &'static str, bool);
+
+const RESULTS: [Quantity; 7] = [
     ("A/A_{0}", "area_at_max_load", true),
     ("Δ/h_{rms}", "penetration_at_max_load", false),
     ("F_{po}/(E*A_{0})", "pull_off_load", true),
@@ -16,6 +18,21 @@ const RESULTS: [(&str, &str, bool); 7] = [
     ("Θ/Θ_{DK}", "loss_ratio_dk", true),
     ("Θ_{DK}, realised spectrum", "loss_dk_realised", true),
 ];
+
+/// Results in SI units.
+const IN_SI: [Quantity; 6] = [
+    ("F_{po} [N]", "pull_off_load_n", true),
+    ("F_{po}/A_{0} [Pa]", "pull_off_pressure_pa", true),
+    ("Θ/A_{0} [J/m²]", "loss_j_m2", true),
+    ("Θ/(A_{0}Δγ)", "loss_over_adhesion", true),
+    ("w_{closing} [J/m²]", "work_closing_j_m2", false),
+    ("w_{opening} [J/m²]", "work_opening_j_m2", true),
+];
+
+const IN_SI_NOTE: &str = "Per nominal area A_{0}. Work of adhesion of closing w_{closing}: energy that the \
+    surfaces give from separation, by way of the load reversal, to zero load on the unloading path. Work of \
+    adhesion of opening w_{opening}: work from there to separation. w_{opening} − w_{closing} = Θ/A_{0}. \
+    Brackets and braces as above.";
 
 /// Quantities compared with the reference case.
 const CHANGES: [(&str, &str); 5] = [
@@ -28,18 +45,29 @@ const CHANGES: [(&str, &str); 5] = [
 
 /// The results with confidence intervals or values of single surfaces, and the number of realizations.
 pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
-    let mut scales = Vec::new();
-    for (_, column, _) in RESULTS {
-        scales.push(cases.scale(column)?);
-    }
+    Ok(html! {
+        (heading("Results"))
+        p { (note(cases.reference())) } "\n"
+        (table(cases, "results", &RESULTS)?)
+        p { (prose(IN_SI_NOTE)) } "\n"
+        (table(cases, "results-si", &IN_SI)?)
+    })
+}
+
+/// A table of results, one row for each case and load.
+fn table(cases: &Cases<'_>, name: &str, quantities: &[Quantity]) -> Result<Markup, StatsError> {
+    let scales =
+        quantities.iter().map(|(_, column, _)| cases.scale(column)).collect::<Result<Vec<_>, _>>()?;
     let head = html! {
         (name_heads())
         th { "finished of planned" }
-        @for ((heading, ..), scale) in RESULTS.iter().zip(&scales) { th { (prose(heading)) (scale.head()) } }
+        @for ((heading, ..), scale) in quantities.iter().zip(&scales) {
+            th { (prose(heading)) (scale.head()) }
+        }
     };
-    let rows =
-        cases.rows().iter().map(|listed| row(cases, listed, &scales)).collect::<Result<Vec<_>, _>>()?;
-    Ok(html! { (heading("Results")) p { (note(cases.reference())) } "\n" (wide("results", &head, &rows)) })
+    let row = |listed| row(cases, listed, quantities, &scales);
+    let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
+    Ok(wide(name, &head, &rows))
 }
 
 fn note(reference: Option<&str>) -> Markup {
@@ -60,15 +88,20 @@ fn note(reference: Option<&str>) -> Markup {
     }
 }
 
-fn row(cases: &Cases<'_>, listed: &Listed, scales: &[Scale]) -> Result<Markup, StatsError> {
+fn row(
+    cases: &Cases<'_>,
+    listed: &Listed,
+    quantities: &[Quantity],
+    scales: &[Scale],
+) -> Result<Markup, StatsError> {
     let row = listed.row;
     let count = |name: &str| -> Result<i64, StatsError> {
         Ok(cases.frame.i64(name)?.get(row).copied().unwrap_or_default())
     };
     let (done, planned, failed) = (count("done_count")?, count("planned_count")?, count("failed_count")?);
     let mut cells = Vec::new();
-    for ((_, column, positive), scale) in RESULTS.into_iter().zip(scales) {
-        cells.push(result(cases, row, column, *scale, positive)?);
+    for ((_, column, positive), scale) in quantities.iter().zip(scales) {
+        cells.push(result(cases, row, column, *scale, *positive)?);
     }
     Ok(html! {
         (cases.name(listed))
