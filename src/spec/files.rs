@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 use toml::de::DeValue;
 
+use super::cases::Cases;
 use super::entries::{entries, shown};
 use super::fault::Faults;
 use super::written::{Written, wrong_type};
@@ -127,28 +128,18 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) ->
 /// Joins cases that differ only in the folder of a file with the same name and content.
 fn join_copies(spec: &mut Spec) {
     let mut names: HashMap<(String, Option<OsString>), String> = HashMap::new();
-    let mut places: HashMap<String, usize> = HashMap::new();
-    let mut joined: Vec<Case> = Vec::new();
-    let mut moved = Vec::new();
-    for mut case in std::mem::take(&mut spec.cases) {
-        if let SurfaceSource::Measured(surface) = &mut case.params.surface
+    let (mut cases, mut moved) = (Cases::default(), Vec::new());
+    for Case { sweeps, mut params } in std::mem::take(&mut spec.cases) {
+        if let SurfaceSource::Measured(surface) = &mut params.surface
             && let Some(digest) = spec.files.get(&surface.file)
         {
             let name = Path::new(&surface.file).file_name().map(ToOwned::to_owned);
             let first = names.entry((digest.clone(), name)).or_insert_with(|| surface.file.clone());
             surface.file.clone_from(first);
         }
-        let place = *places.entry(format!("{:?}", case.params)).or_insert(joined.len());
-        moved.push(place);
-        match joined.get_mut(place) {
-            Some(known) => {
-                let new = case.sweeps.into_iter().filter(|sweep| !known.sweeps.contains(sweep));
-                known.sweeps.extend(new.collect::<Vec<_>>());
-            }
-            None => joined.push(case),
-        }
+        moved.push(cases.add(&sweeps, params));
     }
-    spec.cases = joined;
+    spec.cases = cases.list;
     spec.auto_cases.iter_mut().for_each(|place| *place = moved.get(*place).copied().unwrap_or(*place));
 }
 

@@ -1,12 +1,13 @@
 //! From a draft to the cases: sweeps multiplied out, equal cases joined, and what no single value shows
 //! checked.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::ops::Range;
 
 use toml::Spanned;
 
 use super::auto::Choices;
+use super::cases::Cases;
 use super::elements::check_elements;
 use super::fault::Faults;
 use super::files::named;
@@ -40,7 +41,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             let is_auto = choices.choose(&mut values);
             let params = values.case();
             check(&params, &values, (origins, swept), faults);
-            auto_cases.extend(Some(cases.add(sweep, params)).filter(|_| is_auto));
+            auto_cases.extend(Some(cases.add(&[sweep.to_owned()], params)).filter(|_| is_auto));
         };
     if sweeps.is_empty() {
         add(base.clone(), &origins, &[], BASE, faults);
@@ -146,28 +147,6 @@ fn points(axes: &[AxisDraft]) -> impl Iterator<Item = Vec<&Spanned<Value>>> {
         point.reverse();
         point
     })
-}
-
-/// The different cases, in the order of their first appearance.
-#[derive(Default)]
-struct Cases {
-    list: Vec<Case>,
-    places: HashMap<String, usize>,
-}
-
-impl Cases {
-    /// Adds a case, or the sweep's name to an equal one; gives its place.
-    fn add(&mut self, sweep: &str, params: CaseParams) -> usize {
-        // Every value is finite and none is a zero with a sign, so that equal cases are written alike, and
-        // only they.
-        let place = *self.places.entry(format!("{params:?}")).or_insert(self.list.len());
-        match self.list.get_mut(place) {
-            Some(case) if case.sweeps.iter().any(|known| known == sweep) => {}
-            Some(case) => case.sweeps.push(sweep.to_owned()),
-            None => self.list.push(Case { sweeps: vec![sweep.to_owned()], params }),
-        }
-        place
-    }
 }
 
 /// Sets the default that depends on another value: of a periodic surface the mean alone is removed, since a

@@ -5,6 +5,7 @@
 //! reading of the answer mends the whole file.
 
 mod auto;
+mod cases;
 mod elements;
 mod entries;
 mod fault;

@@ -50,7 +50,7 @@ pub enum StageError {
     #[error(transparent)]
     Scan(StoreError),
     /// A measured surface that changed after the spec was read. It is no failure of a case, whose keys refer
-    /// to the former file.
+    /// to the file as it was read.
     #[error("cannot import the surface {}: {why}", shown(path))]
     Changed {
         /// File.

@@ -156,12 +156,19 @@ pub(super) fn of_failed(campaign: &Campaign, unit: &CycleUnit) -> Vec<(&'static 
     let of_seed =
         || target.as_ref().map(|spectrum| RelativeFlattening::realised(spectrum, &seed(campaign, surface)));
     let ratios = Ratios::of(target.as_ref(), known.or_else(of_seed).as_ref(), &params.material);
-    let columns = [
-        ("conformity", ratios.conformity),
-        ("conformity_realised", ratios.conformity_realised),
-        ("persson_tosatti", ratios.persson_tosatti),
-        ("persson_tosatti_realised", ratios.persson_tosatti_realised),
-        ("sticky_line", ratios.sticky_line),
-    ];
-    columns.into_iter().filter_map(|(name, value)| Some((name, value.filter(finite)?))).collect()
+    ratio_columns(&ratios)
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value.filter(finite)?)))
+        .collect()
+}
+
+/// Columns of the ratios of energies.
+pub(super) fn ratio_columns(of: &Ratios) -> [(&'static str, Option<f64>); 5] {
+    [
+        ("conformity", of.conformity),
+        ("conformity_realised", of.conformity_realised),
+        ("persson_tosatti", of.persson_tosatti),
+        ("persson_tosatti_realised", of.persson_tosatti_realised),
+        ("sticky_line", of.sticky_line),
+    ]
 }

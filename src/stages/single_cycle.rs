@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 
 /// Maximum number of points along a side. For larger surfaces this section would need more memory than the
 /// cycle.
-const GREATEST: u64 = 8192;
+const MAX_POINTS: u64 = 8192;
 
 /// Points of a curve of a theory.
 const POINTS: usize = 120;
@@ -112,7 +112,7 @@ fn of_asperities(
     standings: &[Standing],
     cases: &Frame,
 ) -> Result<Option<SingleCycle>, StageError> {
-    let grid = |surface: &GeneratedSurface| surface.grid() <= GREATEST;
+    let grid = |surface: &GeneratedSurface| surface.grid() <= MAX_POINTS;
     let fits = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.generated().is_none_or(grid);
     let chosen = choose(campaign, standings, cases, Method::Asperities, fits)?;
     let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
@@ -171,7 +171,7 @@ fn choice(method: Option<Method>, has_larger: bool) -> String {
     let has_larger = has_larger && method != Some(Method::BoundaryElements);
     let method = method.map_or_else(String::new, |method| format!(" by {}", method.name()));
     let size = if has_larger {
-        format!(" on surfaces of at most {GREATEST} × {GREATEST} points")
+        format!(" on surfaces of at most {MAX_POINTS} × {MAX_POINTS} points")
     } else {
         String::new()
     };

@@ -1,7 +1,7 @@
 //! `export`: files that other programs run or publish a campaign with.
 
 use super::outputs::{may_replace, written};
-use super::place::{folder, open, open_dir, spec_file, told};
+use super::place::{folder, open, open_dir, script_path, spec_file};
 use super::{BAD_SPEC, Fault, failed, make_folder, own_file, say};
 use crate::campaign::Standing;
 use crate::cli::{FolderArguments, OutputArguments};
@@ -24,13 +24,16 @@ pub(super) fn snakemake(
     force: bool,
 ) -> Result<u8, Fault> {
     let mut campaign = open(spec, output)?;
-    campaign.dir = told(&campaign.dir)?;
+    campaign.dir = script_path(&campaign.dir)?;
     stages::prepare(&campaign).map_err(failed)?;
     let folder = campaign.dir.join("snakemake");
     make_folder(&folder)?;
     let program = own_file()?;
-    let origin =
-        Origin { spec: &told(&spec_file(spec))?, settings: &output.set, folder: &told(Path::new("."))? };
+    let origin = Origin {
+        spec: &script_path(&spec_file(spec))?,
+        settings: &output.set,
+        folder: &script_path(Path::new("."))?,
+    };
     let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
     let path = folder.join("Snakefile");
     let files = [(path.clone(), rules::snakefile(&campaign, &origin, &program, shards).into_bytes())];

@@ -104,7 +104,7 @@ pub(super) fn not_the_root(dir: &Path) -> Result<(), Fault> {
 }
 
 /// The absolute path of a file or folder for scripts of other programs, which read it as text.
-pub(super) fn told(dir: &Path) -> Result<PathBuf, Fault> {
+pub(super) fn script_path(dir: &Path) -> Result<PathBuf, Fault> {
     let refused = |why: String| failed(format!("cannot write the path {} into scripts: {why}", shown(dir)));
     let dir = std::path::absolute(dir).map_err(|error| refused(error.to_string()))?;
     let strange = |c: char| c.is_control() || matches!(c, '{' | '}' | '%' | '"' | '\\');

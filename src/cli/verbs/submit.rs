@@ -1,7 +1,7 @@
 //! `submit`: pending tasks as Slurm jobs; and the state of Slurm's queue for `status`.
 
 use super::ending::failed_cycles;
-use super::place::{open, told};
+use super::place::{open, script_path};
 use super::{BAD_SPEC, FAILED_CASES, Fault, failed, make_folder, own_file, say};
 use crate::campaign::{Campaign, Stage, Standing, Survey};
 use crate::cli::OutputArguments;
@@ -64,7 +64,7 @@ pub(super) fn slurm(
         option_fault(option).map_or(Ok(()), |text| Err(Fault { code: BAD_SPEC, text }))
     })?;
     let mut campaign = open(spec, output)?;
-    campaign.dir = told(&campaign.dir)?;
+    campaign.dir = script_path(&campaign.dir)?;
     let shards = shards.map_or_else(|| usual_shards(&campaign), |count| count as usize);
     let sent = sent(&campaign)?;
     let queue = queue(&sent).unwrap_or_default();

@@ -1,7 +1,7 @@
 //! Table of the analytical estimates of a cycle.
 
 use super::super::StageError;
-use super::super::estimates::{finite, read_surface_estimates, target};
+use super::super::estimates::{finite, ratio_columns, read_surface_estimates, target};
 use super::super::identity::Identity;
 use super::{Computed, CycleTask};
 use crate::physics::EventKind;
@@ -43,11 +43,6 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
         .f64("loss_dalvi_nominal_j", same(Some(all.dalvi_nominal_j)))
         .f64("loss_pinning_nominal_j", same(all.pinning_nominal_j))
         .f64("resolution_j", reversals.iter().map(|turning| resolution_j(&computed.cycle, *turning)))
-        .f64("conformity", same(all.ratios.conformity))
-        .f64("conformity_realised", same(all.ratios.conformity_realised))
-        .f64("persson_tosatti", same(all.ratios.persson_tosatti))
-        .f64("persson_tosatti_realised", same(all.ratios.persson_tosatti_realised))
-        .f64("sticky_line", same(all.ratios.sticky_line))
         .f64("tabor_min", tabor(|of| of.min))
         .f64("tabor_median", tabor(|of| of.median))
         .f64("tabor_max", tabor(|of| of.max))
@@ -62,6 +57,9 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
         .f64("loss_jkr_curve", each(|at| at.jkr_curve.map(|found| found.loss_m3), nominal_m2 * rms_height_m))
         .f64("loss_touched", reversals.iter().map(by_asperities));
     let of_realised = Some(all.deng_kesari_realised);
+    for (name, value) in ratio_columns(&all.ratios) {
+        frame = frame.f64(name, same(value));
+    }
     for (columns, of) in [(&DENG_KESARI, all.deng_kesari), (&DENG_KESARI_REALISED, of_realised)] {
         for (place, column) in columns.iter().enumerate() {
             frame = frame.f64(column.name, same(of.and_then(|of| of.nominal_j[place])));

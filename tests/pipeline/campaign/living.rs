@@ -9,7 +9,7 @@ use std::process::{Child, Stdio};
 
 /// Boundary elements on 64² points with short steps: some seconds.
 const LONG: &str = "name = \"long\"\nseed = 7\nrealizations = 2\n[surface]\nmagnification = 4\n[model]\nmethod = \"boundary_elements\"\n\
-                    [cycle]\nmax_load = [0.004]\n";
+                    [boundary_elements]\napproach_step = 0.015\n[cycle]\nmax_load = [0.004]\n";
 
 fn started(bench: &Bench) -> Child {
     bench.command("run").args(["--jobs", "1"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
@@ -42,11 +42,11 @@ fn e2e_status_of_a_living_and_of_a_killed_run() {
     let (answer, text) = seen_running(&bench, &mut child);
     assert_eq!([state(&answer, 2, 0), state(&answer, 2, 1), state(&answer, 3, 0)], ["running", "waiting", "waiting"], "{answer:#}");
     let task = &answer["processes"][0]["tasks"][0];
-    assert!(task["branch"] == "loading" && task["max_load"] == 0.004 && task["load"].is_number(), "{task:#}");
-    assert!(
-        text.contains("cycle     1 running, 1 waiting\n") && text.contains("  running: loading, ") || text.contains(" running: loading, "),
-        "{text}"
-    );
+    // On a busy machine the branch may end before it is seen.
+    let branches = ["loading", "unloading"];
+    assert!(branches.iter().any(|branch| task["branch"] == *branch) && task["max_load"] == 0.004 && task["load"].is_number(), "{task:#}");
+    assert!(text.contains("cycle     1 running, 1 waiting\n"), "{text}");
+    assert!(branches.iter().any(|branch| text.contains(&format!(" running: {branch}, "))), "{text}");
     assert!(text.contains("running   cycle: 0 of 2 tasks done, ") && text.contains("tasks pending: 1 running, 3 waiting.\n"), "{text}");
     assert!(!text.contains("planned") && !text.contains("interrupted") && !text.contains("resume"), "{text}");
     assert!(text.lines().skip(1).all(|line| line.chars().count() <= 80), "{text}");

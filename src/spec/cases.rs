@@ -1,0 +1,30 @@
+//! The different cases of a spec.
+
+use super::{Case, CaseParams};
+use std::collections::HashMap;
+
+/// The different cases, in the order of their first appearance.
+#[derive(Default)]
+pub(super) struct Cases {
+    pub(super) list: Vec<Case>,
+    places: HashMap<String, usize>,
+}
+
+impl Cases {
+    /// Adds a case, or the names of its sweeps to an equal one; gives its place.
+    pub(super) fn add(&mut self, sweeps: &[String], params: CaseParams) -> usize {
+        // Every value is finite and none is a zero with a sign, so that equal cases are written alike, and
+        // only they.
+        let place = *self.places.entry(format!("{params:?}")).or_insert(self.list.len());
+        if place == self.list.len() {
+            self.list.push(Case { sweeps: Vec::new(), params });
+        }
+        let known = &mut self.list[place].sweeps;
+        for sweep in sweeps {
+            if !known.contains(sweep) {
+                known.push(sweep.clone());
+            }
+        }
+        place
+    }
+}
