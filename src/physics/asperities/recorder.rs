@@ -162,6 +162,7 @@ impl Recorder {
             branch: self.branch,
             max_load: self.max_load,
             mean_penetration_m: state.mean_penetration_m,
+            machine_displacement_m: Some(state.mean_penetration_m),
             load_n: at.totals().load_n,
             least_load_n: ways.iter().copied().fold(at.totals().load_n, f64::min),
             area_m2: at.totals().area_m2,

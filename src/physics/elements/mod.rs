@@ -14,8 +14,10 @@ pub mod law;
 pub mod numerics;
 mod options;
 pub mod path;
+pub mod probe;
 pub mod problem;
 mod record;
+mod setup;
 mod units;
 
 pub use free::FreeStep;
@@ -28,16 +30,10 @@ pub(crate) use constants::CONSTANTS;
 use crate::cycle::{Cycle, Method};
 use crate::model::{KeptContacts, Material};
 use crate::surface::HeightMap;
-use crate::surface::modes::mirrored;
 use crate::theory::flattening::measured_flattening;
 use crate::{LoopPosition, PhysicsError};
-use equilibrium::minimise::Accuracy;
-use grid::half_space::HalfSpace;
-use grid::resample::resample_from;
-use law::Law;
-use ndarray::Array2;
 use path::cycle::{self as solver, Checkpoint, Settings, Turning};
-use problem::{Attraction as Rule, Problem};
+use problem::Problem;
 
 /// Grid points per shortest wavelength, at least, if [`Options::points`] is 0.
 pub const PER_WAVELENGTH: f64 = 16.0;
@@ -94,27 +90,14 @@ impl Elements {
         max_loads: &[f64],
         options: &Options,
     ) -> Result<Self, PhysicsError> {
-        let is_mirrored = !map.is_periodic;
-        let length_m = if is_mirrored { 2.0 * map.length_m } else { map.length_m };
-        let points = if options.points == 0 {
-            points_for(length_m / map.shortest_wavelength_m)
-        } else {
-            options.points
-        };
-        // With mirror images the grid is symmetric about the edges of the surface, half a pixel outside its
-        // first and last points.
-        let (spacing, pixel) = (length_m / points as f64, map.length_m / map.heights_m.nrows() as f64);
-        let first_m = if is_mirrored { 0.5 * (spacing - pixel) } else { 0.0 };
-        let (modulus_pa, rms_height_m) = (material.contact_modulus_pa, map.rms_height_m);
-        let units = Units { length_m, points, modulus_pa, rms_height_m, is_mirrored, first_m };
-        let flattening = measured_flattening(map.square(), map.shortest_wavelength_m, modulus_pa)?;
+        let units = setup::units(map, material, options);
+        let flattening =
+            measured_flattening(map.square(), map.shortest_wavelength_m, material.contact_modulus_pa)?;
         let ratio = flattening.persson_tosatti(material.work_of_adhesion_j_m2);
-        let whole = if is_mirrored { mirrored(map.heights_m)? } else { map.heights_m.to_owned() };
-        let problem =
-            problem(&units, material, resample_from(whole.view(), points, first_m / pixel)?, options)?;
+        let problem = setup::problem(&units, material, setup::heights(map, &units, options)?, options)?;
         Ok(Self {
             problem,
-            settings: settings(&units, max_loads, options, ratio),
+            settings: setup::settings(&units, max_loads, options, ratio),
             units,
             max_loads: max_loads.to_vec(),
             contacts: options.contacts,
@@ -163,58 +146,10 @@ impl Method for Elements {
     fn unload_from(&self, reversal: usize, state: Turning) -> Result<Cycle<Turning>, PhysicsError> {
         let cycle = solver::unload_from(&self.problem, &self.settings, reversal, &state)
             .map_err(|error| self.units.end(error))?;
-        Ok(self.record(cycle))
+        Ok(Cycle { turning: Vec::new(), ..self.record(cycle) })
     }
 
     fn size(&self) -> (&'static str, u64) {
         ("point_count", self.problem.half_space.points() as u64)
-    }
-}
-
-/// The contact problem of heights \[m\] on the grid.
-fn problem(
-    units: &Units,
-    material: &Material,
-    heights_m: Array2<f64>,
-    options: &Options,
-) -> Result<Problem, PhysicsError> {
-    let spacing = units.spacing_m();
-    let work = material.adhesion_length_m() / spacing;
-    let top = heights_m.iter().copied().fold(f64::MIN, f64::max);
-    let (mut heights, _) = heights_m.into_raw_vec_and_offset();
-    heights.iter_mut().for_each(|z| *z = (*z - top) / spacing);
-    let (law, attraction) = match options.attraction {
-        Attraction::Range { range_m } => (Law::morse(work, range_m / spacing), Rule::Range),
-        Attraction::Bonded { nucleation_m, strength } => (
-            Law::crack(work),
-            Rule::Bonded {
-                margin: options.numerics.equilibrium.bond_margin,
-                nucleation: nucleation_m / spacing,
-                strength,
-            },
-        ),
-    };
-    let half_space = HalfSpace::new(units.points, units.points)?;
-    let half_space = if units.is_mirrored { half_space.with_images() } else { half_space };
-    Ok(Problem { half_space, law, heights, attraction, numerics: options.numerics })
-}
-
-/// Settings at a ratio `U_el/Δγ`.
-fn settings(units: &Units, max_loads: &[f64], options: &Options, ratio: f64) -> Settings {
-    let numerics = &options.numerics;
-    let (steps, precision) = numerics.refinement(ratio);
-    let residual = options.precision / precision;
-    Settings {
-        max_loads: max_loads.iter().map(|load| load * units.all()).collect(),
-        step: options.approach_step * units.rms_height_m / units.spacing_m() / steps,
-        jump_tolerance: numerics.steps.jump_tolerance,
-        halvings: options.halvings,
-        accuracy: Accuracy {
-            rms: residual,
-            largest: numerics.equilibrium.largest_residual * residual,
-            iterations: numerics.equilibrium.iterations,
-        },
-        all_regions: options.contacts == KeptContacts::All,
-        summits: Vec::new(),
     }
 }

@@ -1,7 +1,7 @@
 //! Options of boundary elements.
 
 use super::numerics::Numerics;
-use crate::model::KeptContacts;
+use crate::model::{KeptContacts, Machine, Probe, Substrate};
 
 /// Attraction between the surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,7 +32,14 @@ pub struct Options {
     pub points: usize,
     /// Attraction.
     pub attraction: Attraction,
-    /// Step of mean penetration over the rms height.
+    /// Sphere that carries the roughness; none for a flat surface. Its apex is in the middle of the square,
+    /// which is then periodic.
+    pub probe: Option<Probe>,
+    /// Layer of the elastic material; none for a half-space.
+    pub substrate: Option<Substrate>,
+    /// The machine.
+    pub machine: Machine,
+    /// Step of mean penetration over the rms height; with a probe over its JKR length.
     pub approach_step: f64,
     /// Number of times that a step with a jump of the load is halved.
     pub halvings: u32,
@@ -49,6 +56,9 @@ impl Default for Options {
         Self {
             points: 0,
             attraction: Attraction::Bonded { nucleation_m: 0.0, strength: f64::INFINITY },
+            probe: None,
+            substrate: None,
+            machine: Machine::default(),
             approach_step: 0.03,
             halvings: 6,
             precision: 1e-4,

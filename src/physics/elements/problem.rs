@@ -1,10 +1,14 @@
 //! A rough rigid surface against an elastic half-space, its states and their energy.
 //!
-//! With the displacement `u` (zero mean), the mean gap `D` and the heights `z`, the gap is `g = D + u − z`
-//! and the energy `Π(u; D) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ V'(g)` at the mean penetration
-//! `Δ = max z − D`.
+//! With the displacement `u`, the heights `z ≤ 0` from the highest point and the displacement `Δ` of the rigid
+//! surface, 0 where the undeformed surfaces touch, the gap is `g = u − Δ − z` and the energy
+//! `Π(u; Δ) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ V'(g)`.
+//!
+//! On a half-space `u` has zero mean, and `Δ` is the mean penetration. With a compliance `c` in series, of the
+//! periodic cell, a layer or the machine, the mean of `u` is `cF`, the energy `½cF²` of the spring is a part
+//! of Π, and `Δ` is the displacement at the far end of the spring: the contact is at the mean penetration
+//! `Δ − cF`, and events happen at fixed `Δ`.
 
-use super::grid::half_space::remove_mean;
 use super::grid::half_space::{HalfSpace, Operator, Waves};
 use super::grid::sums::{grain, sums};
 pub use super::law::Bonding;
@@ -25,6 +29,9 @@ pub struct Problem {
     pub heights: Vec<f64>,
     /// Rule of attraction.
     pub attraction: Attraction,
+    /// Compliance of the machine \[1/(E* dx)\], a part of that of the half-space: the displacement at its far
+    /// end is the controlled one.
+    pub machine_compliance: f64,
     /// Numerical choices.
     pub numerics: Numerics,
 }
@@ -63,11 +70,12 @@ pub enum Nucleation {
 /// A state of the contact. Fields have one value per point, row by row.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// Mean penetration Δ, 0 where the undeformed surfaces touch \[dx\].
+    /// Displacement Δ of the rigid surface, 0 where the undeformed surfaces touch \[dx\]: the mean penetration
+    /// if the mean of the displacement u is fixed.
     pub mean_penetration: f64,
-    /// Displacement u, with zero mean \[dx\].
+    /// Displacement u \[dx\], with zero mean if that is fixed.
     pub displacement: Vec<f64>,
-    /// Elastic pressure `K u`, with zero mean \[E*\]; empty in a state that is kept, since it follows from
+    /// Elastic pressure `K u` \[E*\]; empty in a state that is kept, since it follows from
     /// the displacement.
     #[serde(skip)]
     pub pressure: Vec<f64>,
@@ -80,8 +88,10 @@ pub struct State {
 pub struct Totals {
     /// Load \[E* dx²\], compression positive.
     pub load: f64,
-    /// Energy Π \[E* dx³\].
+    /// Energy Π \[E* dx³\], without that of the machine's spring.
     pub energy: f64,
+    /// Displacement of the machine's spring, `cF` in equilibrium \[dx\].
+    pub machine: f64,
     /// Points in contact.
     pub contact: usize,
 }
@@ -160,7 +170,8 @@ impl Problem {
     /// Load, energy and area of a state.
     #[must_use]
     pub fn totals(&self, state: &State) -> Totals {
-        let [load, elastic, adhesive, contact] = sums::<4>(self.half_space.points(), |range, sum| {
+        let points = self.half_space.points();
+        let [load, elastic, adhesive, contact] = sums::<4>(points, |range, sum| {
             for k in range {
                 let gap = self.gap(state, k);
                 let bond = self.bond(state.bonds[k], gap);
@@ -170,12 +181,25 @@ impl Problem {
                 sum[3] += f64::from(u8::from(self.touches(state.bonds[k], gap)));
             }
         });
-        Totals { load, energy: 0.5 * elastic + adhesive, contact: contact as usize }
+        let machine = self.machine(state);
+        let spring = if machine == 0.0 { 0.0 } else { 0.5 * machine * machine / self.machine_compliance };
+        Totals { load, energy: 0.5 * elastic + adhesive - spring, machine, contact: contact as usize }
+    }
+
+    /// Displacement of the machine's spring: its share of the mean displacement.
+    fn machine(&self, state: &State) -> f64 {
+        if self.machine_compliance == 0.0 {
+            return 0.0;
+        }
+        let [sum] = sums(state.displacement.len(), |range, sum| {
+            sum[0] += state.displacement[range].iter().sum::<f64>();
+        });
+        sum * self.machine_compliance / self.half_space.mean_compliance()
     }
 
     /// Pressure of the displacement, without the rounding of the increments.
     pub(super) fn refresh(&self, state: &mut State, waves: &mut Waves<f64>) {
-        remove_mean(&mut state.displacement);
+        self.half_space.fix_mean(&mut state.displacement);
         self.half_space.apply(Operator::Stiffness, &state.displacement, &mut state.pressure, waves);
     }
 

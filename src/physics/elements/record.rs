@@ -42,21 +42,56 @@ fn totals(of: GridTotals, units: &Units) -> Totals {
     Totals { load_n: of.load * units.load_n(), area_m2: of.contact as f64 * units.area_m2() }
 }
 
+/// A step of the contact alone \[dx, E* dx³\].
+struct ContactStep {
+    penetration: f64,
+    work: f64,
+    dissipated: f64,
+}
+
+/// A step without the machine's spring.
+///
+/// Under load control the contact ends at its maximum tension: the last step is there, out of contact, and
+/// the energy dissipated in it is that of the contact. What the load does beyond is not a part of the loop.
+fn without_machine(cycle: &records::Cycle, at: usize, units: &Units) -> ContactStep {
+    let of = &cycle.steps[at];
+    if units.is_load_controlled
+        && let Some(before) = before_snap(cycle, at)
+    {
+        return ContactStep {
+            penetration: before.penetration(),
+            work: before.work,
+            dissipated: before.totals.energy + before.pending,
+        };
+    }
+    ContactStep { penetration: of.penetration(), work: of.work, dissipated: of.dissipated }
+}
+
+/// The step before one at which the last contact of an unloading is lost under tension.
+fn before_snap(cycle: &records::Cycle, at: usize) -> Option<&records::Step> {
+    let (of, before) = (&cycle.steps[at], &cycle.steps[at.checked_sub(1)?]);
+    let is_lost = of.reversal.is_some() && of.reversal == before.reversal && of.totals.contact == 0;
+    (is_lost && before.totals.load < 0.0).then_some(before)
+}
+
 fn step(cycle: &records::Cycle, at: usize, events: EventCounts, max_loads: &[f64], units: &Units) -> Step {
     let of = &cycle.steps[at];
     let Totals { load_n, area_m2 } = totals(of.totals, units);
+    let contact = without_machine(cycle, at, units);
     Step {
         branch: if of.reversal.is_some() { Branch::Unloading } else { Branch::Loading },
         max_load: of.reversal.and_then(|reversal| max_loads.get(reversal)).copied(),
         // Not −0.
-        mean_penetration_m: (of.mean_penetration + 0.0) * units.spacing_m(),
+        mean_penetration_m: (contact.penetration + 0.0) * units.spacing_m(),
+        machine_displacement_m: (!units.is_load_controlled)
+            .then_some((of.mean_penetration + 0.0) * units.spacing_m()),
         load_n,
         least_load_n: cycle.least_load(at) * units.load_n(),
         area_m2,
         area_union_m2: area_m2,
         counts: StepCounts { contacts: of.regions, covered: 0, touching: 0, held: 0, events },
-        dissipated_j: of.dissipated * units.energy_j(),
-        work_j: of.work * units.energy_j(),
+        dissipated_j: contact.dissipated * units.energy_j(),
+        work_j: contact.work * units.energy_j(),
         numerics: StepNumerics {
             is_converged: of.converged,
             relative_residual: Some(of.residual),
@@ -68,17 +103,18 @@ fn step(cycle: &records::Cycle, at: usize, events: EventCounts, max_loads: &[f64
 }
 
 fn event(cycle: &records::Cycle, number: usize, of: &records::Event, units: &Units) -> Event {
+    let contact = without_machine(cycle, of.step, units);
     Event {
         step: of.step,
         kind: of.kind.kind(),
         site: Site::Region(of.kind),
         status: None,
         cause: of.kind.kind(),
-        mean_penetration_m: cycle.steps[of.step].mean_penetration * units.spacing_m(),
+        mean_penetration_m: contact.penetration * units.spacing_m(),
         avalanche: number as u64,
         before: totals(of.before, units),
         after: totals(of.after, units),
-        energy_lost_j: of.dissipated * units.energy_j(),
+        energy_lost_j: contact.dissipated * units.energy_j(),
     }
 }
 

@@ -13,11 +13,17 @@ pub struct Units {
     pub modulus_pa: f64,
     /// Rms height \[m\].
     pub rms_height_m: f64,
+    /// Unit of the steps \[m\]: the rms height, or the JKR length of a probe.
+    pub step_unit_m: f64,
     /// True if the square is a surface with its three mirror images. Loads, areas and energies are then those
     /// of the surface: a quarter.
     pub is_mirrored: bool,
     /// Place of the first grid point along x and y, from the first point of the surface \[m\].
     pub first_m: f64,
+    /// Compliance of the machine, of the load of the square \[1/(E* dx)\].
+    pub machine_compliance: f64,
+    /// True if the machine is the soft spring of load control.
+    pub is_load_controlled: bool,
 }
 
 impl Units {

@@ -22,7 +22,7 @@ use super::preconditioner::Preconditioner;
 use super::trial::{Residual, TrialEvaluation};
 use crate::PhysicsError;
 use crate::elements::grid::half_space::{Operator, Waves};
-use crate::elements::grid::sums::grain;
+use crate::elements::grid::sums::{grain, sums};
 use crate::elements::law::Bonding;
 use crate::elements::problem::{Nucleation, Problem, State};
 use crate::memory::filled;
@@ -272,7 +272,7 @@ impl Minimiser {
             if change > limits.bond_update_change * problem.reach() && is_settled {
                 change = 0.0;
                 let late = outcome.iterations >= limits.whole_iterations;
-                outcome.left = late && !loads.contains(&self.load());
+                outcome.left = late && !loads.contains(&self.load(problem, state));
                 if outcome.left {
                     return outcome;
                 }
@@ -293,9 +293,19 @@ impl Minimiser {
         }
     }
 
-    /// Load of the present state: minus the sum of pressure and tension, since the mean pressure is 0.
-    fn load(&self) -> f64 {
-        -self.centre * self.slopes.len() as f64
+    /// Load of the present state: pressure less the gradient, which is pressure and tension. With a fixed mean
+    /// displacement the mean pressure is 0.
+    fn load(&self, problem: &Problem, state: &State) -> f64 {
+        if problem.half_space.fixes_mean() {
+            return -self.centre * self.slopes.len() as f64;
+        }
+        let (pressure, change) = (&state.pressure, &self.increment.pressure);
+        let [load] = sums(pressure.len(), |range, sum| {
+            for k in range {
+                sum[0] += pressure[k] + f64::from(change[k]) - f64::from(self.gradient.values[k]);
+            }
+        });
+        load
     }
 
     /// Relaxes the places of changed bonds, moves the state by that and returns its residual.
@@ -336,7 +346,7 @@ impl Minimiser {
     pub(crate) fn start_from(&mut self, problem: &Problem, state: &mut State) -> Residual {
         if !problem.half_space.is_patch() {
             problem.refresh(state, &mut self.double);
-            self.centre = level(problem, state);
+            self.centre = if problem.half_space.fixes_mean() { level(problem, state) } else { 0.0 };
         }
         self.increment.rebase(problem, state, self.centre);
         self.present_residual(problem, state)
@@ -361,10 +371,9 @@ impl Minimiser {
         state.pressure.iter_mut().zip(&added).for_each(|(pressure, added)| *pressure += added);
     }
 
-    /// Mean of a field of which the sum is given, to be subtracted: none on a patch, where the mean is not
-    /// fixed.
+    /// Mean of a field of which the sum is given, to be subtracted: none where the mean is not fixed.
     pub(super) fn mean(&self, problem: &Problem, sum: f64) -> f64 {
-        if problem.half_space.is_patch() { 0.0 } else { sum / self.slopes.len() as f64 }
+        if problem.half_space.fixes_mean() { sum / self.slopes.len() as f64 } else { 0.0 }
     }
 
     /// Moves the state along the direction, and computes the gradient and the slopes of the law there.

@@ -10,7 +10,6 @@ use super::passes::{PAIRS, Right};
 use super::trial::Descent;
 use crate::PhysicsError;
 use crate::elements::grid::half_space::Operator;
-use crate::elements::grid::half_space::remove_mean;
 use crate::elements::grid::sums::{PANEL, add, dot, grain, largest, panel_sums, total};
 use crate::elements::problem::{Nucleation, Problem, State};
 use crate::memory::filled;
@@ -87,7 +86,7 @@ impl Minimiser {
     }
 
     /// Rate at which the displacement follows the mean penetration at an equilibrium, and the stiffness
-    /// `dF/dΔ` of the contact: `(K + V'')·rate = V''` for displacements of zero mean, by conjugate gradients.
+    /// `dF/dΔ` of the contact: `(K + V'')·rate = V''`, of zero mean if that is fixed, by conjugate gradients.
     /// The stiffness `Σ V''·(1 − rate)` has an error of second order in that of the rate.
     ///
     /// # Errors
@@ -97,7 +96,7 @@ impl Minimiser {
         self.evaluate_at(problem, state);
         let mut inner = self.take_scratch();
         inner.residual.copy_from_slice(&self.slopes);
-        remove_mean(&mut inner.residual);
+        problem.half_space.fix_mean(&mut inner.residual);
         let residual =
             problem.numerics.equilibrium.rate_residual * dot(&inner.residual, &inner.residual).sqrt();
         self.solve(problem, &mut inner, &mut found, Limits { step: f64::INFINITY, residual });
@@ -173,7 +172,7 @@ impl Minimiser {
             }
             add(&mut found.step, length, &inner.search);
             add(&mut found.response, length, &inner.stiff);
-            self.lower(inner, length as f32);
+            self.lower(problem, inner, length as f32);
             if dot(&inner.residual, &inner.residual).sqrt() <= limits.residual {
                 return iteration;
             }
@@ -187,19 +186,19 @@ impl Minimiser {
         most
     }
 
-    /// `residual ← residual − length (K + V'') search`, without its mean.
-    fn lower(&self, inner: &mut Inner, length: f32) {
+    /// `residual ← residual − length (K + V'') search`, without its mean if that is fixed.
+    fn lower(&self, problem: &Problem, inner: &mut Inner, length: f32) {
         let fields = (&mut inner.residual, &inner.stiff, &self.slopes, &inner.search)
             .into_par_iter()
             .with_min_len(grain(1));
         fields.for_each(|(to, stiff, slope, search)| *to -= length * (stiff + slope * search));
-        remove_mean(&mut inner.residual);
+        problem.half_space.fix_mean(&mut inner.residual);
     }
 
-    /// `direction ← M⁻¹ field`, without its mean.
+    /// `direction ← M⁻¹ field`, without its mean if that is fixed.
     fn precondition_from(&mut self, problem: &Problem, field: &[f32]) {
         let right = Right { field, mean: 0.0, changes: self.pairs.changes(), weights: [0.0; PAIRS] };
         self.preconditioner.divide(problem, &mut self.single, &mut self.direction, &right, &self.slopes);
-        remove_mean(&mut self.direction);
+        problem.half_space.fix_mean(&mut self.direction);
     }
 }

@@ -212,6 +212,7 @@ impl Patch {
             law: whole.law.clone(),
             heights: field()?,
             attraction: whole.attraction,
+            machine_compliance: 0.0,
             numerics: whole.numerics,
         };
         let state = State {

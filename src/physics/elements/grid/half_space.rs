@@ -4,11 +4,14 @@
 //! wavevector but zero. Lengths in this module are in grid spacings and pressures in E*, so the operator is
 //! `K = |q|/2` and its elastic energy `½ u·K u` in `E* dx³`.
 //!
+//! The mean displacement is fixed or, with the compliance of a [`Medium`], proportional to the mean pressure.
+//!
 //! On a *patch*, a square of the grid outside of which displacements vanish, the pressure is the same: a
 //! convolution with the pressure around one displaced point. Its transforms have one and a half times the
 //! side, so that it is exact up to offsets of half a side. Beyond, displacements near opposite borders act on
 //! one another as at the offset across the border, and these are small in a local relaxation.
 
+use super::medium::Medium;
 use super::sums::{PANEL, grain, sums};
 use crate::PhysicsError;
 use crate::memory::filled;
@@ -22,6 +25,9 @@ use std::sync::Arc;
 
 /// Stiffness that the spectral preconditioner adds, in E*/dx.
 const ADDED_STIFFNESS: f64 = 0.15;
+/// Least stiffness of a mean displacement in the preconditioner, times the side \[E*\]: that of a contact of an
+/// eighth of the side. A softer machine does not make the surface softer, which is held by the contact.
+const STIFF_MEAN: f64 = 0.25;
 /// Columns of wavevectors in a block, and rows in a group.
 const BLOCK: usize = 8;
 
@@ -34,6 +40,10 @@ pub struct HalfSpace {
     padded: (usize, usize),
     /// True if the grid holds a surface and its mirror images.
     is_mirrored: bool,
+    /// True if the mean displacement is 0 at every load.
+    fixes_mean: bool,
+    /// Mean displacement per mean pressure \[dx/E*\]; 0 if the mean displacement is fixed.
+    mean_compliance: f64,
     double: Plans<f64>,
     single: Plans<f32>,
 }
@@ -93,7 +103,7 @@ pub struct Waves<T> {
 pub enum Operator {
     /// Displacement to pressure, `K = |q|/2`.
     Stiffness,
-    /// Pressure to displacement, `1/K`, with 0 at `q = 0`.
+    /// Pressure to displacement, `1/K`, with 0 at `q = 0` where the mean is fixed.
     Compliance,
     /// `1/(K + 0.15)`: the spectral preconditioner, to compare the split one with.
     Shifted,
@@ -133,16 +143,31 @@ impl HalfSpace {
     /// # Errors
     /// Not enough memory.
     pub fn new(rows: usize, columns: usize) -> Result<Self, PhysicsError> {
+        Self::of(&Medium::default(), rows, columns)
+    }
+
+    /// Operator of a medium on `rows × columns` points.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub fn of(medium: &Medium, rows: usize, columns: usize) -> Result<Self, PhysicsError> {
+        let mean_compliance = medium.mean_compliance();
         let of = |row: usize, column: usize| {
             let qx = TAU * row.min(rows - row) as f64 / rows as f64;
             let qy = TAU * column as f64 / columns as f64;
-            0.5 * qx.hypot(qy)
+            match qx.hypot(qy) {
+                0.0 if mean_compliance > 0.0 => mean_compliance.recip(),
+                0.0 => 0.0,
+                q => medium.stiffness(q),
+            }
         };
         Ok(Self {
             rows,
             columns,
             padded: (rows, columns),
             is_mirrored: false,
+            fixes_mean: mean_compliance == 0.0,
+            mean_compliance,
             double: Plans::new(rows, columns, of)?,
             single: Plans::new(rows, columns, of)?,
         })
@@ -213,6 +238,8 @@ impl HalfSpace {
             columns: side,
             padded: (size, size),
             is_mirrored: false,
+            fixes_mean: false,
+            mean_compliance: self.mean_compliance,
             double: Plans::new(size, size, of)?,
             single: Plans::new(size, size, of)?,
         })
@@ -222,6 +249,25 @@ impl HalfSpace {
     #[must_use]
     pub fn is_patch(&self) -> bool {
         self.padded.0 > self.rows
+    }
+
+    /// True if the mean displacement is 0 at every load: neither on a patch nor with a compliance.
+    #[must_use]
+    pub fn fixes_mean(&self) -> bool {
+        self.fixes_mean
+    }
+
+    /// Mean displacement per mean pressure \[dx/E*\]; 0 if the mean displacement is fixed.
+    #[must_use]
+    pub fn mean_compliance(&self) -> f64 {
+        self.mean_compliance
+    }
+
+    /// Subtracts the mean of a displacement or of its gradient, if it is fixed.
+    pub(crate) fn fix_mean<T: Real>(&self, field: &mut [T]) {
+        if self.fixes_mean {
+            remove_mean(field);
+        }
     }
 
     /// Points of a transform.
@@ -420,7 +466,13 @@ impl HalfSpace {
         }
         let points = self.transformed() as f64;
         let (unit, shift) = (T::nearest(points.powi(-2)), T::nearest(ADDED_STIFFNESS / points));
-        let inverse = |stiff: T| if stiff > T::zero() { unit / stiff } else { T::zero() };
+        let is_soft = self.mean_compliance > 0.0 && !self.is_patch();
+        let least = if is_soft { T::nearest(STIFF_MEAN / (self.rows as f64 * points)) } else { T::zero() };
+        let inverse = |stiff: T| match stiff {
+            stiff if stiff > least => unit / stiff,
+            stiff if stiff > T::zero() => unit / least,
+            _ => T::zero(),
+        };
         for (column, stiffness) in columns.chunks_mut(stride).zip(stiffness.chunks(rows)) {
             let column = &mut column[..rows];
             column[self.rows..].fill(Complex::zero());
@@ -464,7 +516,7 @@ struct ColumnSpace<T> {
 }
 
 /// Subtracts the mean.
-pub(crate) fn remove_mean<T: Real>(field: &mut [T]) {
+fn remove_mean<T: Real>(field: &mut [T]) {
     let [sum] =
         sums(field.len(), |range, sum| sum[0] += field[range].iter().map(|x| (*x).into()).sum::<f64>());
     let mean = T::nearest(sum / field.len() as f64);

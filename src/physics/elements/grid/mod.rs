@@ -1,5 +1,6 @@
 //! Regular grid: response of the half-space by Fourier transforms, deterministic sums, resampling.
 
 pub mod half_space;
+pub mod medium;
 pub mod resample;
 pub(crate) mod sums;

@@ -33,7 +33,7 @@ pub fn run(
 }
 
 /// Unloads from a state at a load reversal: the steps, events, regions and maps that [`run`] has from there,
-/// numbered from 0.
+/// numbered from 0, with that state as all load reversals.
 ///
 /// # Errors
 /// Not enough memory; surfaces that do not separate.
@@ -51,7 +51,7 @@ pub fn unload_from(
         let mut run = CycleRun::new(problem, settings, None)?;
         run.at.cycle = Cycle { turning: vec![turning.clone(); reversal + 1], ..Cycle::default() };
         while !run.advance(Some(reversal), &|_| {})? {}
-        Ok(Cycle { turning: Vec::new(), ..run.at.cycle })
+        Ok(run.at.cycle)
     })
 }
 
@@ -114,7 +114,7 @@ impl CycleRun<'_> {
         };
         self.return_to_path();
         let is_reached = self.advance_step(1.0, Some(wanted))?;
-        let (reached, mean_penetration_m) = (self.at.last.totals.load, self.at.last.mean_penetration);
+        let (reached, mean_penetration_m) = (self.at.last.totals.load, self.at.last.penetration());
         if is_reached {
             if self.is_closed() {
                 return Err(LoopError::Closed { mean_penetration_m }.into());
@@ -201,8 +201,9 @@ impl CycleRun<'_> {
             }
             return Ok(true);
         }
-        if self.at.state.mean_penetration < -self.farthest() {
-            return Err(LoopError::Inseparable { mean_penetration_m: self.at.state.mean_penetration }.into());
+        let mean_penetration_m = self.at.last.penetration();
+        if mean_penetration_m < -self.farthest() {
+            return Err(LoopError::Inseparable { mean_penetration_m }.into());
         }
         self.advance_step(-1.0, None)?;
         self.keep_max_tension();

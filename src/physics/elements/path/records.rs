@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct Step {
     /// Load reversal from which the step unloads; none while loading.
     pub reversal: Option<usize>,
-    /// Mean penetration Δ \[dx\].
+    /// Mean penetration Δ, with the displacement of the machine's spring \[dx\].
     pub mean_penetration: f64,
     /// Load, energy and area.
     pub totals: Totals,
@@ -30,7 +30,7 @@ pub struct Step {
     /// Estimated error of that integral \[E* dx³\]: a part of the difference between the cubic through loads
     /// and stiffnesses and the trapezoid, or of the error that a jump of the load may cause.
     pub uncertainty: f64,
-    /// Work `∫F dΔ` since the branch began \[E* dx³\].
+    /// Work `∫F dΔ` of the contact since the branch began \[E* dx³\].
     pub work: f64,
     /// Iterations on the whole grid, those of discarded longer steps included.
     pub iterations: u64,
@@ -42,6 +42,14 @@ pub struct Step {
     pub residual: f64,
     /// True if the accuracy was reached.
     pub converged: bool,
+}
+
+impl Step {
+    /// Mean penetration of the contact \[dx\]: without the displacement of the machine's spring.
+    #[must_use]
+    pub fn penetration(&self) -> f64 {
+        self.mean_penetration - self.totals.machine
+    }
 }
 
 /// A sudden change of the contact.

@@ -26,6 +26,9 @@ use crate::elements::problem::{Attraction, Nucleation, Problem, State};
 use crate::memory::filled;
 use serde::{Deserialize, Serialize};
 
+/// Share of the machine's spring in the displacement from which on its stiffness is that of the spring.
+const SOFT: f64 = 0.5;
+
 /// Settings of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -230,8 +233,13 @@ impl<'a> CycleRun<'a> {
             stiffness: rate.stiffness,
             ..Step::default()
         };
-        let Work { straight, bend, across } = work_between(on_loop(from), on_loop(&reached));
-        let work = straight + bend;
+        let Work { bend, across, .. } = work_between(on_loop(from), on_loop(&reached));
+        // The trapezoid of the contact has no part of the machine's spring, and the bend is the same for both.
+        // A soft machine moves by much more than the contact, which its stiffness does not resolve.
+        let is_soft = self.problem.machine_compliance * from.stiffness.max(reached.stiffness) > SOFT;
+        let bend = if is_soft { 0.0 } else { bend };
+        let moved = reached.penetration() - from.penetration();
+        let work = 0.5 * (from.totals.load + totals.load) * moved + bend;
         let imbalance = work - (totals.energy - from.totals.energy);
         let step = Step {
             reversal: from.reversal,
@@ -344,7 +352,7 @@ impl<'a> CycleRun<'a> {
         loop {
             let halvings = self.halvings();
             self.at.level = self.at.level.min(halvings);
-            let length = sense * self.settings.step / f64::from(1_u32 << self.at.level);
+            let length = sense * self.step_of_machine() / f64::from(1_u32 << self.at.level);
             let limit = self.settings.jump_tolerance * self.at.dissipated;
             let mut state = self.predict(self.at.state.mean_penetration + length)?;
             let outcome =
@@ -374,6 +382,20 @@ impl<'a> CycleRun<'a> {
             self.accept(attempt);
             return Ok(false);
         }
+    }
+
+    /// Step of the machine in which the contact moves by one step, as long as it is as stiff as between the
+    /// last two states of the branch.
+    fn step_of_machine(&self) -> f64 {
+        let compliance = self.problem.machine_compliance;
+        let [.., from, to] = self.at.cycle.steps.as_slice() else { return self.settings.step };
+        if compliance == 0.0 || from.reversal != to.reversal {
+            return self.settings.step;
+        }
+        let load = to.totals.load - from.totals.load;
+        let contact = to.penetration() - from.penetration();
+        let stiffness = if load * contact > 0.0 { load / contact } else { 0.0 };
+        self.settings.step * (1.0 + compliance * stiffness)
     }
 
     /// Most halvings of the next step.
