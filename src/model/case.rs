@@ -2,7 +2,8 @@
 
 use super::{
     Amplitudes, AttractionKind, Boundary, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn,
-    KeptContacts, Material, Method, Missing, Normalization, Nucleation, Opening, Slip, Slips,
+    KeptContacts, Machine, Material, Method, Missing, Normalization, Nucleation, Opening, Probe, Slip, Slips,
+    Substrate,
 };
 use crate::physics::surface::spectrum::Spectrum;
 use serde::Serialize;
@@ -12,8 +13,14 @@ use serde::Serialize;
 pub struct CaseParams {
     /// The rough surface.
     pub surface: SurfaceSource,
+    /// The sphere that carries the roughness; none for a flat surface.
+    pub probe: Option<Probe>,
     /// The half-space and its adhesion.
     pub material: Material,
+    /// The layer of the elastic material; none for a half-space.
+    pub substrate: Option<Substrate>,
+    /// The machine that moves the rigid surface.
+    pub machine: Machine,
     /// The method and its options.
     pub method: MethodOptions,
     /// Uncorrected equations of the paper, sorted, each once. Boundary elements have those of analytical

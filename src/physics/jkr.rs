@@ -256,6 +256,18 @@ impl Asperity {
         radius
     }
 
+    /// Contact radius \[m\] on the branch that is stable under control of the load, at a load `F` \[N\] from the
+    /// pull-off load on: `a³ = (3R/(4E*)) (F + 3πRΔγ + sqrt(6πRΔγF + (3πRΔγ)²))`.
+    ///
+    /// `None` below the pull-off load. Johnson, Kendall & Roberts, Proc. R. Soc. A 324, 301 (1971).
+    #[must_use]
+    pub fn radius_at_load(&self, load: f64) -> Option<f64> {
+        let pull = 3.0 * PI * self.radius * self.adhesion;
+        let root = (2.0 * pull * load + pull * pull).sqrt();
+        let hertz = load + pull + root;
+        root.is_finite().then(|| (0.75 * self.radius * hertz / self.modulus).cbrt())
+    }
+
     /// Stored elastic energy at fixed contact radius `U(δ, a) = E*(aδ² − 2a³δ/(3R) + a⁵/(5R²))` \[J\].
     ///
     /// On the equilibrium path `∂U/∂δ = F` and `∂U/∂(πa²) = Δγ`.

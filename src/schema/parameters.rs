@@ -6,7 +6,7 @@ use super::{Column, real, text};
 use crate::model::Choice;
 
 /// Number of parameters.
-const COUNT: usize = 31;
+const COUNT: usize = 37;
 
 /// Parameters that define a case, in the order of their columns.
 pub static PARAMETERS: [Parameter; COUNT] = LIST;
@@ -368,4 +368,45 @@ const LIST: [Parameter; COUNT] = [
         |case| case.params.elements().map(|elements| Number(elements.precision)),
     )
     .of_method(),
+    parameter(
+        real("probe_radius_m", "m", "Radius R of the spherical probe; null for a flat surface").or_null(),
+        ["R", "R [m]"],
+        30,
+        |case| case.params.probe.map(|probe| Number(probe.radius_m)),
+    ),
+    parameter(
+        real("machine_compliance_m_n", "m/N", "Compliance c of the machine; null for a stiff one").or_null(),
+        ["c", "c [m/N]"],
+        31,
+        |case| Some(case.params.machine.compliance_m_n).filter(|c| *c > 0.0).map(Number),
+    ),
+    parameter(
+        text(
+            "far_field",
+            "Elastic body at a distance from the contact: \"cell\" (periodic images) or \"half_space\" (one \
+             contact)",
+        ),
+        ["far field", "far field"],
+        32,
+        |case| Some(word(case.params.machine.far_field)),
+    ),
+    parameter(
+        text("control", "Quantity that the machine controls: \"displacement\" or \"load\""),
+        ["control", "control"],
+        33,
+        |case| Some(word(case.params.machine.control)),
+    ),
+    parameter(
+        real("layer_thickness_m", "m", "Thickness h of the layer on a rigid base; null for a half-space")
+            .or_null(),
+        ["t", "layer thickness [m]"],
+        34,
+        |case| case.params.substrate.map(|layer| Number(layer.thickness_m)),
+    ),
+    parameter(
+        real("poisson_ratio", "1", "Poisson's ratio ν of the layer; null for a half-space").or_null(),
+        ["ν", "Poisson's ratio ν"],
+        35,
+        |case| case.params.substrate.map(|layer| Number(layer.poisson_ratio)),
+    ),
 ];

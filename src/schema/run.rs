@@ -197,6 +197,13 @@ const STEP_AFTER_COUNTS: &[Column] = &[
         "Load F_max/(E* A0) of the spec whose reversal is at this step; null elsewhere",
     )
     .or_null(),
+    real(
+        "machine_displacement_m",
+        "m",
+        "Displacement Δ + cF of the machine, which is controlled, with the compliance c of its spring; null \
+         under control of the load",
+    )
+    .or_null(),
 ];
 
 const STEP_COLUMNS: [Column; STEP_BEFORE_COUNTS.len() + OF_STEPS.len() + STEP_AFTER_COUNTS.len()] =

@@ -244,7 +244,7 @@ fn check_range(
 }
 
 /// The later written of some values; nothing if one of them is not known.
-fn latest(paths: &[&str], origins: &[Origin]) -> Option<Range<usize>> {
+pub(super) fn latest(paths: &[&str], origins: &[Origin]) -> Option<Range<usize>> {
     let places: Vec<usize> = paths
         .iter()
         .filter_map(|path| path.split_once('.').and_then(|(table, name)| find(table, name)))

@@ -13,11 +13,12 @@ use super::fault::Faults;
 use super::files::named;
 use super::keys::{GENERATED, KEYS, find};
 use super::number::short;
+use super::probe::check_contact;
 use super::sweep::{AxisDraft, SweepDraft};
 use super::values::Values;
 use super::walk::{Draft, Origin, written};
 use crate::model::{
-    Boundary, CaseParams, Choice, Detrend, GeneratedSurface, MeasuredSurface, Method, SurfaceSource,
+    Boundary, CaseParams, Choice, Detrend, FarField, GeneratedSurface, MeasuredSurface, Method, SurfaceSource,
 };
 
 use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
@@ -149,12 +150,16 @@ fn points(axes: &[AxisDraft]) -> impl Iterator<Item = Vec<&Spanned<Value>>> {
     })
 }
 
-/// Sets the default that depends on another value: of a periodic surface the mean alone is removed, since a
-/// plane breaks its periodicity.
+/// Sets the defaults that depend on another value: of a periodic surface the mean alone is removed, since a
+/// plane breaks its periodicity; a probe is on a half-space.
 fn complete(values: &mut Values, origins: &[Origin]) {
     let unwritten = |key: usize| matches!(origins[key], Origin::Default);
     if values.measured.periodic && find("surface", "detrend").is_some_and(unwritten) {
         values.measured.detrend = Detrend::Mean;
+    }
+    let is_on_half_space = values.radius_m.is_some() && values.thickness_m.is_none();
+    if is_on_half_space && find("machine", "compliance").is_some_and(unwritten) {
+        values.machine.far_field = FarField::HalfSpace;
     }
 }
 
@@ -207,6 +212,7 @@ fn check_measured(
 
 /// Checks what depends on two values of a case.
 fn check(case: &CaseParams, values: &Values, written: Written<'_>, faults: &mut Faults<'_>) {
+    check_contact(case, values, written.0, faults);
     if let Some(options) = case.elements() {
         check_elements(case, options, values, written.0, faults);
     }

@@ -2,8 +2,8 @@
 
 use super::{Value, Values};
 use crate::model::{
-    Amplitudes, AttractionKind, Boundary, Choice, Coalescence, Detrend, FastAxis, Filter, Interaction,
-    JumpIn, KeptContacts, Method, Missing, Normalization, Nucleation, Opening, Slip,
+    Amplitudes, AttractionKind, Boundary, Choice, Coalescence, Control, Detrend, FarField, FastAxis, Filter,
+    Interaction, JumpIn, KeptContacts, Method, Missing, Normalization, Nucleation, Opening, Slip,
 };
 
 /// One key of a table.
@@ -318,10 +318,54 @@ pub(super) static KEYS: &[Key] = &[
         note: "maximum output step of Δ/h_rms; default 0.01; 1e-5 gives about 500 000 steps per branch",
     }),
     key!(cycle.contacts in cycle.contacts, "", "Steps at which contact spots are stored."; word KeptContacts),
+    key!(cycle.max_force_n in max_force_n, "F_max", "Load reversals in newtons, instead of `max_load`. Of a \
+         measured surface, `size_m` must be given."; Kind::Numbers(Limits {
+        low: 0.0, above: true, high: 1e6, unit: " N", unit_name: "newtons",
+        slip: Some((1e-6, "micronewtons")), note: "F_max, maximum load",
+    }, 64), |loads: &Vec<f64>| Value::Numbers(loads.clone()), Numbers(loads) => Some(loads.clone())),
+    key!(cycle.max_pressure_pa in max_pressure_pa, "F_max/A0", "Load reversals as nominal pressures, instead \
+         of `max_load`."; Kind::Numbers(Limits {
+        low: 0.0, above: true, high: 1e13, unit: " Pa", unit_name: "pascals",
+        slip: Some((1e3, "kilopascals")), note: "F_max/A0, maximum nominal pressure",
+    }, 64), |loads: &Vec<f64>| Value::Numbers(loads.clone()), Numbers(loads) => Some(loads.clone())),
+    key!(probe.radius_m in radius_m, "R", "Radius of a spherical probe that carries the roughness, with its \
+         apex in the middle of the square. 0: a flat surface."; optional number Limits {
+        low: 0.0, above: false, high: 10.0, unit: " m", unit_name: "metres",
+        slip: Some((1e-6, "micrometres")), note: "R, radius of the probe; 0 for a flat surface",
+    }),
+    key!(machine.compliance_m_n in machine.compliance_m_n, "c", "Compliance of the machine: the controlled \
+         displacement is Δ + cF."; number Limits {
+        low: 0.0, above: false, high: 1e9, unit: " m/N", unit_name: "metres per newton", slip: None,
+        note: "c, compliance of the machine; 0 for a stiff one",
+    }),
+    key!(machine.stiffness_n_m in stiffness_n_m, "1/c", "Stiffness of the machine, instead of \
+         `compliance_m_n`. 0: not given."; optional number Limits {
+        low: 0.0, above: false, high: 1e15, unit: " N/m", unit_name: "newtons per metre", slip: None,
+        note: "1/c, stiffness of the machine, for example that of a cantilever",
+    }),
+    key!(machine.compliance in machine.far_field, "", "Elastic body at a distance from the contact. The \
+         default with a probe on a half-space is `half_space`, else `cell`."; word FarField),
+    key!(machine.control in machine.control, "", "Quantity that the machine controls."; word Control),
+    key!(substrate.thickness_m in thickness_m, "h", "Thickness of a layer of the elastic material, bonded to \
+         a rigid base; for boundary elements. 0: a half-space."; optional number Limits {
+        low: 0.0, above: false, high: 10.0, unit: " m", unit_name: "metres",
+        slip: Some((1e-6, "micrometres")), note: "h, thickness of the layer; 0 for a half-space",
+    }),
+    key!(substrate.poisson_ratio in poisson_ratio, "ν", "Poisson's ratio of the layer."; number Limits {
+        low: 0.0, above: false, high: 0.5, unit: "", unit_name: "", slip: None,
+        note: "ν, Poisson's ratio, 0 <= ν <= 0.5; default 0.5",
+    }),
 ];
 
 /// The tables that hold the keys, in the order in which they are shown.
-pub(super) const TABLES: [&str; 5] = ["surface", "material", "model", "boundary_elements", "cycle"];
+pub(super) const TABLES: [&str; 8] =
+    ["surface", "material", "model", "boundary_elements", "cycle", "probe", "machine", "substrate"];
+
+/// Tables that a spec need not have: without them the surface is flat, the half-space deep and the machine
+/// stiff.
+pub const OPTIONAL_TABLES: [&str; 3] = ["probe", "machine", "substrate"];
+/// Keys of `[cycle]` for loads in other units, which are converted.
+pub const OTHER_LOADS: [&str; 2] = ["max_force_n", "max_pressure_pa"];
 
 /// Keys of `[surface]` that describe a measured surface.
 pub const MEASURED: [&str; 17] = [

@@ -16,6 +16,7 @@ mod json_schema;
 mod keys;
 mod nearest;
 mod number;
+mod probe;
 mod realizations;
 mod reference;
 mod settings;
@@ -45,7 +46,8 @@ pub use elements::{
 pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};
 pub use json_schema::{SCHEMA_FILE, json_schema};
-pub use keys::{GENERATED, MEASURED};
+pub use keys::{GENERATED, MEASURED, OPTIONAL_TABLES, OTHER_LOADS};
+pub use probe::{LARGEST_RADIUS_SHARE, probe_refusal};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
 pub use values::Values;

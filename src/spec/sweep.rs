@@ -27,7 +27,8 @@ pub(super) struct AxisDraft {
 }
 
 /// Keys of a sweep.
-const IN_SWEEP: [&str; 6] = ["name", "surface", "material", "model", "boundary_elements", "cycle"];
+const IN_SWEEP: [&str; 9] =
+    ["name", "surface", "material", "model", "boundary_elements", "cycle", "probe", "machine", "substrate"];
 
 /// Reads the sweeps.
 pub(super) fn sweeps(

@@ -4,7 +4,8 @@ use super::Value;
 use super::keys::{KEYS, TABLES};
 use crate::model::{
     AsperityOptions, Attraction, AttractionKind, CaseParams, ElementOptions, GeneratedSurface, LoadingPath,
-    Material, MeasuredSurface, Method, MethodOptions, Nucleation, Opening, Slip, SurfaceSource,
+    Machine, Material, MeasuredSurface, Method, MethodOptions, Nucleation, Opening, Probe, Slip, Substrate,
+    SurfaceSource,
 };
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -34,8 +35,22 @@ pub struct Values {
     pub nucleation: Nucleation,
     /// `boundary_elements.opening`.
     pub opening: Opening,
-    /// `[cycle]` but the step of the asperity model.
+    /// `[cycle]` but the step of the asperity model and the loads in other units.
     pub cycle: LoadingPath,
+    /// `probe.radius_m`.
+    pub radius_m: Option<f64>,
+    /// `substrate.thickness_m`.
+    pub thickness_m: Option<f64>,
+    /// `substrate.poisson_ratio`.
+    pub poisson_ratio: f64,
+    /// `[machine]` but its stiffness.
+    pub machine: Machine,
+    /// `machine.stiffness_n_m`.
+    pub stiffness_n_m: Option<f64>,
+    /// `cycle.max_force_n`.
+    pub max_force_n: Vec<f64>,
+    /// `cycle.max_pressure_pa`.
+    pub max_pressure_pa: Vec<f64>,
 }
 
 impl Default for Values {
@@ -53,6 +68,13 @@ impl Default for Values {
             nucleation: Nucleation::Touch,
             opening: Opening::Strength,
             cycle: LoadingPath::default(),
+            radius_m: None,
+            thickness_m: None,
+            poisson_ratio: 0.5,
+            machine: Machine::default(),
+            stiffness_n_m: None,
+            max_force_n: Vec::new(),
+            max_pressure_pa: Vec::new(),
         }
     }
 }
@@ -83,7 +105,42 @@ impl Values {
         } else {
             MethodOptions::Asperities(self.asperities.clone())
         };
-        CaseParams { surface, material: self.material, method, as_printed, cycle: self.cycle.clone() }
+        let poisson_ratio = self.poisson_ratio;
+        let substrate = self.thickness_m.map(|thickness_m| Substrate { thickness_m, poisson_ratio });
+        let compliance_m_n = self.stiffness_n_m.map_or(self.machine.compliance_m_n, f64::recip);
+        CaseParams {
+            surface,
+            probe: self.radius_m.map(|radius_m| Probe { radius_m }),
+            material: self.material,
+            substrate,
+            machine: Machine { compliance_m_n, ..self.machine },
+            method,
+            as_printed,
+            cycle: LoadingPath { max_load: self.max_loads(), ..self.cycle.clone() },
+        }
+    }
+
+    /// Loads `F/(E* A0)` at the load reversals, from newtons or pascals if they are given in these.
+    fn max_loads(&self) -> Vec<f64> {
+        let modulus_pa = self.material.contact_modulus_pa;
+        let over = |loads: &[f64], unit: f64| loads.iter().map(|load| load / unit).collect();
+        match self.length_m() {
+            Some(length_m) if !self.max_force_n.is_empty() => {
+                over(&self.max_force_n, modulus_pa * length_m * length_m)
+            }
+            _ if !self.max_pressure_pa.is_empty() => over(&self.max_pressure_pa, modulus_pa),
+            _ => self.cycle.max_load.clone(),
+        }
+    }
+
+    /// Side of the nominal square \[m\]; of a measured surface nothing unless the spec states it.
+    pub(super) fn length_m(&self) -> Option<f64> {
+        if self.measured.file.is_empty() {
+            return Some(self.generated.length_m);
+        }
+        let MeasuredSurface { size_m, size_y_m, .. } = self.measured;
+        let side = if size_y_m > 0.0 { size_m.min(size_y_m) } else { size_m };
+        Some(side).filter(|side| *side > 0.0)
     }
 
     fn attraction(&self) -> Attraction {
@@ -104,8 +161,14 @@ impl From<&CaseParams> for Values {
             method: case.method.kind(),
             as_printed: case.as_printed.clone(),
             cycle: case.cycle.clone(),
+            radius_m: case.probe.map(|probe| probe.radius_m),
+            thickness_m: case.substrate.map(|layer| layer.thickness_m),
+            machine: case.machine,
             ..Self::default()
         };
+        if let Some(layer) = case.substrate {
+            values.poisson_ratio = layer.poisson_ratio;
+        }
         match &case.surface {
             SurfaceSource::Generated(surface) => values.generated = surface.clone(),
             SurfaceSource::Measured(surface) => {

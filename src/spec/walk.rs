@@ -57,7 +57,7 @@ pub(super) fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<us
 }
 
 /// Keys at the top of a spec.
-const TOP: [&str; 12] = [
+const TOP: [&str; 15] = [
     "name",
     "seed",
     "realizations",
@@ -67,6 +67,9 @@ const TOP: [&str; 12] = [
     "model",
     "boundary_elements",
     "cycle",
+    "probe",
+    "machine",
+    "substrate",
     "sweep",
     "files",
     "auto_methods",

@@ -2,7 +2,7 @@
 
 use std::fmt::{Error, Write as _};
 
-use super::keys::{GENERATED, KEYS, Key, MEASURED, TABLES};
+use super::keys::{GENERATED, KEYS, Key, MEASURED, OPTIONAL_TABLES, OTHER_LOADS, TABLES};
 use super::values::Values;
 use super::{Case, Spec, Value};
 use crate::model::{Choice as _, Method};
@@ -27,10 +27,12 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
         writeln!(text, "auto_methods = [{}]", list(methods))?;
     }
     for table in TABLES {
-        writeln!(text, "\n[{table}]")?;
-        for key in
-            KEYS.iter().filter(|key| key.table == table && is_read(key, &spec.base) && !follows(key, spec))
-        {
+        let is_written = |key: &&Key| key.table == table && is_read(key, &spec.base) && !follows(key, spec);
+        let mut keys = KEYS.iter().filter(is_written).peekable();
+        if keys.peek().is_some() {
+            writeln!(text, "\n[{table}]")?;
+        }
+        for key in keys {
             writeln!(text, "{} = {}", key.name, value(&(key.get)(&spec.base)))?;
         }
     }
@@ -52,10 +54,23 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     Ok(())
 }
 
-/// True if the base's kind of surface reads a key, or it says something other than its default.
+/// True if the base's kind of surface reads a key, or it says something other than its default. A table that
+/// a spec need not have is written where one of its keys says something, and loads in the unit of the spec.
 fn is_read(key: &Key, base: &Values) -> bool {
+    let default = Values::default();
+    let says = |key: &Key| (key.get)(base) != (key.get)(&default);
     let others: &[&str] = if base.measured.file.is_empty() { &MEASURED } else { &GENERATED };
-    key.table != "surface" || !others.contains(&key.name) || (key.get)(base) != (key.get)(&Values::default())
+    match key.table {
+        "surface" => !others.contains(&key.name) || says(key),
+        "cycle" if OTHER_LOADS.contains(&key.name) => says(key),
+        "cycle" if key.name == "max_load" => base.max_force_n.is_empty() && base.max_pressure_pa.is_empty(),
+        table if OPTIONAL_TABLES.contains(&table) => {
+            KEYS.iter().any(|other| other.table == table && says(other))
+                && (key.name != "compliance_m_n" || base.stiffness_n_m.is_none())
+                && (key.name != "stiffness_n_m" || base.stiffness_n_m.is_some())
+        }
+        _ => true,
+    }
 }
 
 /// True if a value was left to its default, which differs between the cases of a sweep that does not set it:
@@ -67,7 +82,7 @@ fn follows(key: &Key, spec: &Spec) -> bool {
             .any(|sweep| sweep.name == name && sweep.axes.iter().any(|axis| axis.key == key.path))
     };
     let differs = |case: &Case| (key.get)(&Values::from(&case.params)) != (key.get)(&spec.base);
-    key.path == "surface.detrend"
+    ["surface.detrend", "machine.compliance"].contains(&key.path)
         && spec.cases.iter().any(|case| differs(case) && !case.sweeps.iter().all(|name| set(name)))
 }
 

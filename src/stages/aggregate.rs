@@ -180,7 +180,7 @@ fn case_input(
     // The import of a measured surface may have failed.
     let of_scan = of_case.filter(|of| surface.measured().is_some() && campaign.estimates_path(of).is_file());
     let row = of_scan.map(|of| SurfaceRow::read(campaign, of)).transpose()?;
-    let square = row.as_ref().map(SurfaceRow::square).transpose()?;
+    let square = row.as_ref().map(|row| row.square(params)).transpose()?;
     let lattice = lattice(params, square);
     let rms_height_m = row.as_ref().map(SurfaceRow::rms_height_m).transpose()?;
     let generated = surface.generated();

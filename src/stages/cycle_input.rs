@@ -6,6 +6,7 @@ use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
 use crate::schema::{
     Column, DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
 };
+use crate::spec::CaseParams;
 use crate::stats::{CycleInput, Given, Value};
 use crate::store::{ColumnData, Frame, FrameError, parquet};
 
@@ -33,10 +34,11 @@ impl SurfaceRow {
     }
 
     /// Square with the cut-off wavelength of a measured surface.
-    pub(super) fn square(&self) -> Result<Square, FrameError> {
+    pub(super) fn square(&self, params: &CaseParams) -> Result<Square, FrameError> {
         let number = |name: &str| self.0.first_f64(name);
         let is_periodic = self.0.bool("periodic")?.first().copied().unwrap_or_default();
-        Ok(Square { length_m: number("length_m")?, shortest_wavelength_m: number("cut_off_m")?, is_periodic })
+        let is_mirrored = !is_periodic && params.probe.is_none();
+        Ok(Square { length_m: number("length_m")?, shortest_wavelength_m: number("cut_off_m")?, is_mirrored })
     }
 }
 

@@ -40,7 +40,7 @@ impl Elements {
             };
             steps.last().is_some_and(|step| step.mean_penetration > farthest) || is_reached()
         };
-        let free = problem.without_adhesion();
+        let free = problem.without_adhesion()?;
         let steps = load_freely(
             &free,
             free.numerics.steps.free_step * settings.step,

@@ -10,6 +10,7 @@
 //! `Δ − cF`, and events happen at fixed `Δ`.
 
 use super::grid::half_space::{HalfSpace, Operator, Waves};
+use super::grid::medium::Medium;
 use super::grid::sums::{grain, sums};
 pub use super::law::Bonding;
 use super::law::{Bond, Law};
@@ -113,12 +114,24 @@ impl Problem {
         self.law.bond(bonding, gap)
     }
 
-    /// Surface and half-space of this problem without attraction. The wall is the spring of the law of the
-    /// band-limited crack for every law: the exponential repulsion of Morse's law overflows in iterations
-    /// without a limit of their length.
-    #[must_use]
-    pub fn without_adhesion(self) -> Self {
-        Self { attraction: Attraction::None, law: Law::crack(self.law.work()), ..self }
+    /// Surface and half-space of this problem without attraction, moved without the machine's spring. The wall
+    /// is the spring of the law of the band-limited crack for every law: the exponential repulsion of Morse's
+    /// law overflows in iterations without a limit of their length.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub fn without_adhesion(self) -> Result<Self, PhysicsError> {
+        let half_space = if self.machine_compliance == 0.0 {
+            self.half_space
+        } else {
+            let machine = self.machine_compliance * self.half_space.points() as f64;
+            let Medium { layer, series_compliance } = *self.half_space.medium();
+            let medium = Medium { layer, series_compliance: series_compliance - machine };
+            let whole = HalfSpace::of(&medium, self.half_space.rows(), self.half_space.columns())?;
+            if self.half_space.is_mirrored() { whole.with_images() } else { whole }
+        };
+        let law = Law::crack(self.law.work());
+        Ok(Self { half_space, attraction: Attraction::None, law, machine_compliance: 0.0, ..self })
     }
 
     /// Undeformed and out of contact at a mean penetration.
@@ -194,7 +207,7 @@ impl Problem {
         let [sum] = sums(state.displacement.len(), |range, sum| {
             sum[0] += state.displacement[range].iter().sum::<f64>();
         });
-        sum * self.machine_compliance / self.half_space.mean_compliance()
+        sum * self.machine_compliance / self.half_space.medium().mean_compliance()
     }
 
     /// Pressure of the displacement, without the rounding of the increments.

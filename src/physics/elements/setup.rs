@@ -77,7 +77,8 @@ pub(super) fn heights(
 fn medium(units: &Units, options: &Options) -> Medium {
     let points = units.points as f64;
     // The image displacement of a periodic square, and a compliance of the whole square per mean pressure.
-    let cell = if options.machine.far_field == FarField::HalfSpace { CELL_CONSTANT / PI * points } else { 0.0 };
+    let cell =
+        if options.machine.far_field == FarField::HalfSpace { CELL_CONSTANT / PI * points } else { 0.0 };
     let layer = options.substrate.map(|substrate| Layer {
         thickness: substrate.thickness_m / units.spacing_m(),
         poisson_ratio: substrate.poisson_ratio,

@@ -80,6 +80,7 @@ impl<'a> Tables<'a> {
                     .map(|s| s.numerics.stiffness_n_m.map(|stiffness| stiffness / stiffness_unit_n_m)),
             )
             .f64("reversal_load", reversals)
+            .f64("machine_displacement_m", some(|s| s.machine_displacement_m))
             .build()?)
     }
 

@@ -5,9 +5,9 @@ pub mod golden;
 mod johnson;
 mod operator;
 mod peer;
+mod probe;
 mod reversals;
 mod rough;
-mod probe;
 mod sphere;
 mod trapping;
 
@@ -30,7 +30,14 @@ fn problem(rows: usize, columns: usize, heights: impl Fn(usize, usize) -> f64, l
     let mut heights: Vec<f64> = (0..rows * columns).map(|k| heights(k / columns, k % columns)).collect();
     let top = heights.iter().copied().fold(f64::MIN, f64::max);
     heights.iter_mut().for_each(|z| *z -= top);
-    Problem { half_space: HalfSpace::new(rows, columns).unwrap(), law, heights, attraction, machine_compliance: 0.0, numerics: Numerics::DEFAULT }
+    Problem {
+        half_space: HalfSpace::new(rows, columns).unwrap(),
+        law,
+        heights,
+        attraction,
+        machine_compliance: 0.0,
+        numerics: Numerics::DEFAULT,
+    }
 }
 
 /// The equilibrium that `find` leads to, with all contacts that form there.

@@ -42,8 +42,7 @@ pub struct HalfSpace {
     is_mirrored: bool,
     /// True if the mean displacement is 0 at every load.
     fixes_mean: bool,
-    /// Mean displacement per mean pressure \[dx/E*\]; 0 if the mean displacement is fixed.
-    mean_compliance: f64,
+    medium: Medium,
     double: Plans<f64>,
     single: Plans<f32>,
 }
@@ -167,7 +166,7 @@ impl HalfSpace {
             padded: (rows, columns),
             is_mirrored: false,
             fixes_mean: mean_compliance == 0.0,
-            mean_compliance,
+            medium: *medium,
             double: Plans::new(rows, columns, of)?,
             single: Plans::new(rows, columns, of)?,
         })
@@ -239,7 +238,7 @@ impl HalfSpace {
             padded: (size, size),
             is_mirrored: false,
             fixes_mean: false,
-            mean_compliance: self.mean_compliance,
+            medium: self.medium,
             double: Plans::new(size, size, of)?,
             single: Plans::new(size, size, of)?,
         })
@@ -257,10 +256,10 @@ impl HalfSpace {
         self.fixes_mean
     }
 
-    /// Mean displacement per mean pressure \[dx/E*\]; 0 if the mean displacement is fixed.
+    /// The medium.
     #[must_use]
-    pub fn mean_compliance(&self) -> f64 {
-        self.mean_compliance
+    pub fn medium(&self) -> &Medium {
+        &self.medium
     }
 
     /// Subtracts the mean of a displacement or of its gradient, if it is fixed.
@@ -466,7 +465,7 @@ impl HalfSpace {
         }
         let points = self.transformed() as f64;
         let (unit, shift) = (T::nearest(points.powi(-2)), T::nearest(ADDED_STIFFNESS / points));
-        let is_soft = self.mean_compliance > 0.0 && !self.is_patch();
+        let is_soft = !self.fixes_mean && !self.is_patch();
         let least = if is_soft { T::nearest(STIFF_MEAN / (self.rows as f64 * points)) } else { T::zero() };
         let inverse = |stiff: T| match stiff {
             stiff if stiff > least => unit / stiff,

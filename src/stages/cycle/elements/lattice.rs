@@ -2,12 +2,13 @@
 
 use super::super::super::StageError;
 use super::ElementsCase;
-use crate::model::GeneratedSurface;
+use crate::model::{GeneratedSurface, Probe};
 use crate::physics::PhysicsError;
-use crate::physics::elements::memory_bytes;
+use crate::physics::elements::{PER_WAVELENGTH, memory_bytes};
 use crate::physics::memory;
-use crate::spec::CaseParams;
+use crate::spec::{CaseParams, probe_refusal};
 use crate::store::hdf5::SurfaceHeader;
+use std::f64::consts::PI;
 
 /// Grid of a case on one surface.
 #[derive(Debug, Clone, Copy)]
@@ -29,8 +30,8 @@ pub(in crate::stages) struct Square {
     pub(in crate::stages) length_m: f64,
     /// Shortest wavelength; of a measured surface the cut-off \[m\].
     pub(in crate::stages) shortest_wavelength_m: f64,
-    /// True if the surface continues periodically.
-    pub(in crate::stages) is_periodic: bool,
+    /// True if the surface is continued by mirror images: it is not periodic, and not on a probe.
+    pub(in crate::stages) is_mirrored: bool,
 }
 
 impl Square {
@@ -40,13 +41,13 @@ impl Square {
         let of_measured =
             || header.measured.as_ref().map_or(header.length_m, |measured| measured.shortest_wavelength_m);
         let shortest_wavelength_m = params.surface.generated().map_or_else(of_measured, of_generated);
-        Self { length_m: header.length_m, shortest_wavelength_m, is_periodic: header.periodic }
+        let is_mirrored = !header.periodic && params.probe.is_none();
+        Self { length_m: header.length_m, shortest_wavelength_m, is_mirrored }
     }
 
-    /// Side of the periodic square \[m\] and its number of shortest wavelengths. A surface that is not
-    /// periodic is continued by mirror images.
+    /// Side of the periodic square \[m\] and its number of shortest wavelengths.
     pub(super) fn extent(self) -> (f64, f64) {
-        let length_m = if self.is_periodic { self.length_m } else { 2.0 * self.length_m };
+        let length_m = if self.is_mirrored { 2.0 * self.length_m } else { self.length_m };
         (length_m, length_m / self.shortest_wavelength_m)
     }
 }
@@ -54,13 +55,13 @@ impl Square {
 impl Lattice {
     /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
     fn of(of: ElementsCase<'_>, length_m: f64, wavelengths: f64) -> Self {
-        let points = of.options.grid(wavelengths);
+        let points = of.options.grid(wavelengths.max(of.radii(length_m)));
         let spacing_m = length_m / f64::from(points);
         Self {
             points: points as usize,
             per_wavelength: f64::from(points) / wavelengths,
             range_m: of.options.range(of.params.material.adhesion_length_m(), spacing_m),
-            is_mirrored: !of.params.surface.is_periodic(),
+            is_mirrored: !of.params.surface.is_periodic() && of.params.probe.is_none(),
         }
     }
 
@@ -76,6 +77,21 @@ impl Lattice {
     }
 }
 
+impl ElementsCase<'_> {
+    /// Side of a square \[m\] in shortest lengths of a probe, of which the automatic grid resolves each as a
+    /// shortest wavelength: 12 points per JKR radius at zero penetration.
+    fn radii(self, length_m: f64) -> f64 {
+        let radius_m = |probe: &Probe| (2.0 * PI).cbrt() * probe.jkr_radius_m(&self.params.material);
+        self.params
+            .probe
+            .as_ref()
+            .map_or(0.0, |probe| POINTS_PER_RADIUS / PER_WAVELENGTH * length_m / radius_m(probe))
+    }
+}
+
+/// Grid points of the automatic grid per JKR radius of a probe at zero penetration.
+const POINTS_PER_RADIUS: f64 = 12.0;
+
 /// The grid of a case on a surface with this header and rms height \[m\], checked.
 pub(super) fn checked_lattice(
     of: ElementsCase<'_>,
@@ -84,6 +100,11 @@ pub(super) fn checked_lattice(
 ) -> Result<Lattice, StageError> {
     let (length_m, wavelengths) = Square::of(of.params, header).extent();
     let (elements, loads) = (of.options, of.params.cycle.max_load.len());
+    let CaseParams { probe, material, cycle, .. } = of.params;
+    let load_n = cycle.largest_load() * material.contact_modulus_pa * length_m * length_m;
+    if let Some((problem, help)) = probe.and_then(|probe| probe_refusal(&probe, material, length_m, load_n)) {
+        return Err(StageError::Range { problem, help });
+    }
     if let Some((problem, help)) =
         elements.refusal(length_m, wavelengths, of.params.material.adhesion_length_m())
     {

@@ -48,6 +48,9 @@ pub(super) fn setup(
     let options = Options {
         points: lattice.points,
         attraction,
+        probe: params.probe,
+        substrate: params.substrate,
+        machine: params.machine,
         approach_step: elements.approach_step,
         halvings: elements.halvings,
         precision: elements.precision,

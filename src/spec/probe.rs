@@ -1,0 +1,157 @@
+//! Requirements of probe, machine, substrate and loads on the other values of their case.
+
+use super::elements::latest;
+use super::fault::Faults;
+use super::keys::{Limits, find};
+use super::number::short;
+use super::values::Values;
+use super::walk::{Origin, written};
+use crate::model::{CaseParams, Control, FarField, Material, Method, Probe};
+use crate::physics::elements::probe::SPHERE_SHARE;
+use crate::physics::jkr::Asperity;
+
+/// Largest radius of contact of a probe over the side of the square: beyond, its surface is not that of the
+/// sphere.
+pub const LARGEST_RADIUS_SHARE: f64 = SPHERE_SHARE;
+
+/// Why a probe cannot be used on a square of a side \[m\] with a load \[N\], and what to do: its contact by
+/// JKR is too large.
+#[must_use]
+pub fn probe_refusal(
+    probe: &Probe,
+    material: &Material,
+    length_m: f64,
+    load_n: f64,
+) -> Option<(String, String)> {
+    let radius_m = Asperity::new(probe.radius_m, material).ok()?.radius_at_load(load_n)?;
+    let largest_m = LARGEST_RADIUS_SHARE * length_m;
+    (radius_m > largest_m).then(|| {
+        let problem = format!(
+            "the contact of the probe is larger than the square allows: a smooth sphere has a contact radius \
+             of {radius_m:.3e} m at the maximum load, and at most {LARGEST_RADIUS_SHARE} L = {largest_m:.3e} m \
+             can be used"
+        );
+        let side_m = radius_m / LARGEST_RADIUS_SHARE;
+        (problem, format!("use a square of at least {side_m:.2e} m, or a smaller load or probe"))
+    })
+}
+
+/// Checks the values of `[probe]`, `[machine]` and `[substrate]`, and loads in other units.
+pub(super) fn check_contact(case: &CaseParams, values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
+    check_loads(case, values, origins, faults);
+    check_machine(case, origins, faults);
+    check_substrate(case, values, origins, faults);
+    if let Some(probe) = &case.probe {
+        check_probe(probe, case, values, origins, faults);
+    }
+}
+
+/// Refuses a pair of keys that exclude each other.
+fn exclude(keys: [&str; 2], help: &str, origins: &[Origin], faults: &mut Faults<'_>) {
+    let place = |path: &str| {
+        let (table, name) = path.split_once('.')?;
+        written(find(table, name), origins)
+    };
+    if let [Some(_), Some(_)] = keys.map(place)
+        && let Some(span) = latest(&keys, origins)
+    {
+        let [first, second] = keys;
+        faults.add(&span, format!("`{first}` and `{second}` exclude each other"), help.to_owned());
+    }
+}
+
+fn check_loads(case: &CaseParams, values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
+    let keys = ["cycle.max_load", "cycle.max_force_n", "cycle.max_pressure_pa"];
+    let help = "give the loads in one unit";
+    for pair in [[keys[0], keys[1]], [keys[0], keys[2]], [keys[1], keys[2]]] {
+        exclude(pair, help, origins, faults);
+    }
+    if !values.max_force_n.is_empty()
+        && values.length_m().is_none()
+        && let Some(span) = latest(&[keys[1]], origins)
+    {
+        let message = "`cycle.max_force_n` needs the side of the measured surface";
+        let help = "give surface.size_m, or the load as cycle.max_pressure_pa = F/A0";
+        faults.add(&span, message.to_owned(), help.to_owned());
+        return;
+    }
+    let Some(key) = find("cycle", "max_load").map(|place| &super::keys::KEYS[place]) else { return };
+    let super::keys::Kind::Numbers(Limits { high, .. }, _) = &key.kind else { return };
+    let largest = case.cycle.largest_load();
+    if largest > *high
+        && let Some(span) = latest(&[keys[1], keys[2]], origins)
+    {
+        let message = format!(
+            "the load is F/(E* A0) = {}, above {}: contact is full far below",
+            short(largest),
+            short(*high)
+        );
+        let help = "use a smaller load, a larger square or a larger material.contact_modulus_pa";
+        faults.add(&span, message, help.to_owned());
+    }
+}
+
+fn check_machine(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
+    let help = "give one of them";
+    exclude(["machine.compliance_m_n", "machine.stiffness_n_m"], help, origins, faults);
+    if case.machine.control == Control::Load
+        && case.machine.compliance_m_n > 0.0
+        && let Some(span) =
+            latest(&["machine.control", "machine.compliance_m_n", "machine.stiffness_n_m"], origins)
+    {
+        let message = "under control of the load the compliance of the machine does not act";
+        let help = "remove the compliance or stiffness, or write control = \"displacement\"";
+        faults.add(&span, message.to_owned(), help.to_owned());
+    }
+}
+
+fn check_substrate(case: &CaseParams, values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
+    if case.substrate.is_none() {
+        return;
+    }
+    if values.method == Method::Asperities
+        && let Some(span) = latest(&["substrate.thickness_m", "model.method"], origins)
+    {
+        let message = "the asperity model is one of a half-space: it has no layer";
+        faults.add(&span, message.to_owned(), "write method = \"boundary_elements\"".to_owned());
+    }
+    if case.machine.far_field == FarField::HalfSpace
+        && let Some(span) = latest(&["machine.compliance", "substrate.thickness_m"], origins)
+    {
+        let message = "a layer has a rigid base: `machine.compliance` cannot be that of a half-space";
+        faults.add(&span, message.to_owned(), "remove machine.compliance".to_owned());
+    }
+}
+
+fn check_probe(
+    probe: &Probe,
+    case: &CaseParams,
+    values: &Values,
+    origins: &[Origin],
+    faults: &mut Faults<'_>,
+) {
+    if let Some(surface) = case.surface.generated()
+        && probe.radius_m <= surface.rms_height_m
+        && let Some(span) = latest(&["probe.radius_m", "surface.rms_height_m"], origins)
+    {
+        let (radius, height) = (short(probe.radius_m), short(surface.rms_height_m));
+        let message =
+            format!("`probe.radius_m`, {radius} m, must be greater than the rms height, {height} m");
+        faults.add(&span, message, "both are in metres".to_owned());
+    }
+    let Some(length_m) = values.length_m() else { return };
+    let load_n = case.cycle.largest_load() * case.material.contact_modulus_pa * length_m * length_m;
+    let keys = [
+        "probe.radius_m",
+        "surface.length_m",
+        "surface.size_m",
+        "cycle.max_load",
+        "cycle.max_force_n",
+        "cycle.max_pressure_pa",
+    ];
+    if let Some((message, help)) = probe_refusal(probe, &case.material, length_m, load_n)
+        && let Some(span) = latest(&keys, origins)
+    {
+        faults.add(&span, message, help);
+    }
+}
