@@ -263,3 +263,19 @@ fn reg_an_asperity_needs_positive_finite_numbers() {
         }
     }
 }
+
+/// The radius under control of the load is the inverse of Eq 1 from the pull-off load on: at zero load `(9π/2)^⅓`, at the pull-off load `(9π/8)^⅓` in units of
+/// the sheet, and at every load between. Rounding only, of a root at the pull-off load.
+#[test]
+fn law_the_radius_at_a_load_inverts_the_load() {
+    for (jkr, material, radius) in cases() {
+        let (ua, _, uf) = units(&material, radius);
+        let at = |load: f64| jkr.radius_at_load(load * uf).unwrap() / ua;
+        assert!((at(0.0) / (4.5 * PI).cbrt() - 1.0).abs() < 1e-14);
+        assert!((at(-1.5 * PI * (1.0 - 1e-15)) / (9.0 * PI / 8.0).cbrt() - 1.0).abs() < 1e-6);
+        for load in [-4.7, -3.0, -0.1, 0.5, 20.0, 1e4] {
+            assert!((jkr.load(at(load) * ua) / uf - load).abs() < 1e-11 * (load.abs() + 1.5 * PI), "{load}");
+        }
+        assert_eq!(jkr.radius_at_load(-4.8 * uf), None);
+    }
+}

@@ -3,6 +3,7 @@
 use super::{BONDED, problem};
 use hysteron::physics::elements::events::work::{OnLoop, Work, least_between, work_between};
 use hysteron::physics::elements::grid::half_space::{HalfSpace, Operator};
+use hysteron::physics::elements::grid::medium::{Layer, Medium};
 use hysteron::physics::elements::law::Law;
 use hysteron::physics::elements::problem::Bonding;
 use std::f64::consts::{PI, TAU};
@@ -182,4 +183,35 @@ fn law_work_of_a_cubic_is_exact() {
         let steep = work_between(OnLoop { stiffness: 100.0, ..at(a) }, OnLoop { stiffness: 50.0, ..at(b) });
         assert_eq!(steep.bend, 0.0);
     }
+}
+
+/// The displacement of a bonded layer over that of a half-space, `S(qh)` at q = ¼, ½, 1, 2: by the layer of ContactMechanics 1.8.3,
+/// `PeriodicFFTElasticHalfSpace((16, 16), 1.0, (8π, 8π), thickness=h, poisson=ν).surface_stiffness`, to its nine printed digits, with the uniform
+/// compression `(1 − ν)²/(h (1 − 2ν))` of E*. That program has no incompressible layer; for ν = ½ and thin layers `S = 2s³/3` to second order.
+#[test]
+fn val_layer() {
+    let cases = [
+        (0.0, 1.5, [0.187331590, 0.370789980, 0.681400255, 0.953820618], 0.666666667),
+        (0.3, 1.5, [0.154315197, 0.311886324, 0.607562100, 0.931826966], 0.816666667),
+        (0.45, 0.4, [0.016883868, 0.035769169, 0.084494046, 0.223617214], 7.5625),
+    ];
+    for (poisson_ratio, thickness, shares, stiffness) in cases {
+        let layer = Layer { thickness, poisson_ratio };
+        for (q, share) in [0.25, 0.5, 1.0, 2.0].into_iter().zip(shares) {
+            assert!((layer.share(q * thickness) - share).abs() < 1e-9, "ν = {poisson_ratio}, q = {q}: {}", layer.share(q * thickness));
+            let medium = Medium { layer: Some(layer), series_compliance: 0.0 };
+            assert!((medium.stiffness(q) - 0.5 * q / share).abs() < 1e-6 * q / share);
+        }
+        assert!((layer.compression() * stiffness - 1.0).abs() < 1e-8);
+    }
+    let incompressible = Layer { thickness: 1.0, poisson_ratio: 0.5 };
+    for s in [1e-4, 1e-3, 1e-2] {
+        assert!((incompressible.share(s) / (2.0 / 3.0 * s * s * s) - 1.0).abs() < 2.0 * s * s, "{}", incompressible.share(s));
+    }
+    assert_eq!(incompressible.compression(), 0.0);
+    // A deep layer is a half-space, without a step where the exponentials end.
+    assert!((incompressible.share(21.99) - 1.0).abs() < 1e-12 && incompressible.share(1e3) == 1.0);
+    let deep = Medium { layer: Some(Layer { thickness: 1e6, poisson_ratio: 0.3 }), series_compliance: 2.0 };
+    assert_eq!(deep.stiffness(0.1), 0.05);
+    assert_eq!(deep.mean_compliance(), 2.0 + 1e6 * 0.4 / 0.49);
 }
