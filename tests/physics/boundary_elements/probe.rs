@@ -48,12 +48,17 @@ fn exact(amplitude: f64, wavelength: f64, widest: f64) -> Vec<[f64; 2]> {
 /// The loop along a branch to a load, on a machine of compliance c \[m/N\] that is moved by `D = δ + cF` from the touch at δ = 0: states with
 /// the largest D so far while loading, with the smallest so far while unloading, and jumps between them, at which the work is done by the machine.
 fn loop_of(branch: &[[f64; 2]], max_load: f64, compliance: f64) -> Loop {
+    loop_until(branch, |[_, load]| load >= max_load, compliance)
+}
+
+/// As [`loop_of`], to the first state of penetration and load for which `ends` holds.
+fn loop_until(branch: &[[f64; 2]], ends: impl Fn([f64; 2]) -> bool, compliance: f64) -> Loop {
     let moved = |k: usize| branch[k][0] + compliance * branch[k][1];
     let work = |from: usize, to: usize| 0.5 * (branch[from][1] + branch[to][1]) * (branch[to][0] - branch[from][0]);
     let (mut at, mut found) = ((0..branch.len()).find(|k| moved(*k) >= 0.0).unwrap(), Loop::default());
     // From no load at δ = 0 to the first state of the machine at D = 0.
     found.loss_j += 0.5 * branch[at][1] * branch[at][0];
-    while branch[at][1] < max_load {
+    while !ends(branch[at]) {
         let next = (at + 1..branch.len()).find(|k| moved(*k) >= moved(at)).unwrap();
         found.jumps[0] += usize::from(next > at + 40);
         found.loss_j += work(at, next);
@@ -132,8 +137,7 @@ fn val_reference_of_the_probe() {
         let [amplitude, wavelength] = waves(alpha);
         let branch = exact(amplitude, wavelength, 4.0 * a0());
         let deepest = 1.2 * a0() * a0() / RADIUS;
-        let max_load = branch.iter().find(|point| point[0] >= deepest).unwrap()[1];
-        let found = loop_of(&branch, max_load, 0.0);
+        let found = loop_until(&branch, |[penetration, _]| penetration >= deepest, 0.0);
         assert!((found.pull_off_n / jkr.pull_off_n - force).abs() < 1e-3, "α = {alpha}: {found:?}");
         assert!((found.loss_j / jkr.loss_j - loss).abs() < 5e-3, "α = {alpha}: {found:?}");
         assert_eq!(found.jumps, jumps, "α = {alpha}");
