@@ -49,6 +49,58 @@ impl Material {
     }
 }
 
+/// A rigid sphere that carries the roughness.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Probe {
+    /// Radius R \[m\].
+    pub radius_m: f64,
+}
+
+impl Probe {
+    /// JKR length `(RΔγ²/E*²)^⅓` \[m\], the unit of the penetration of a smooth sphere: it leaves contact at a
+    /// penetration of −1.61 of it.
+    #[must_use]
+    pub fn jkr_length_m(&self, material: &Material) -> f64 {
+        (self.radius_m * material.adhesion_length_m().powi(2)).cbrt()
+    }
+
+    /// JKR radius of contact `(R²Δγ/E*)^⅓` \[m\]; a smooth sphere touches with 1.85 of it.
+    #[must_use]
+    pub fn jkr_radius_m(&self, material: &Material) -> f64 {
+        (self.radius_m.powi(2) * material.adhesion_length_m()).cbrt()
+    }
+}
+
+/// A layer of the elastic material, bonded to a rigid base.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Substrate {
+    /// Thickness h \[m\].
+    pub thickness_m: f64,
+    /// Poisson's ratio ν, from 0 to 0.5.
+    pub poisson_ratio: f64,
+}
+
+/// The machine that moves the rigid surface.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Compliance c of its spring \[m/N\], at least 0.
+    pub compliance_m_n: f64,
+    /// Elastic body at a distance from the contact.
+    pub far_field: FarField,
+    /// Controlled quantity.
+    pub control: Control,
+}
+
+impl Default for Machine {
+    fn default() -> Self {
+        Self { compliance_m_n: 0.0, far_field: FarField::Cell, control: Control::Displacement }
+    }
+}
+
+/// Displacement of a point load by its images on a square lattice of spacing L and the balancing uniform load,
+/// in `−F/(πE*L)`: `−4ζ(½)β(½)`, with Riemann's and Dirichlet's functions.
+pub const CELL_CONSTANT: f64 = 3.900_264_920_001_956;
+
 /// A choice that a spec makes by a word.
 pub trait Choice: Copy + PartialEq + Sized + 'static {
     /// Every value with its word, in the order in which they are shown.
@@ -99,6 +151,24 @@ choice! {
         Fixed = "fixed",
         /// Rayleigh-distributed amplitudes: a Gaussian surface.
         Gaussian = "gaussian",
+    }
+}
+choice! {
+    /// Elastic body at a distance from the contact.
+    FarField {
+        /// Periodic cell: the mean displacement of the surface is fixed.
+        Cell = "cell",
+        /// Half-space with one contact: the periodic images do not displace its centre.
+        HalfSpace = "half_space",
+    }
+}
+choice! {
+    /// Quantity that the machine controls.
+    Control {
+        /// Displacement of the far end of its spring.
+        Displacement = "displacement",
+        /// Load: contact is lost at the maximum tension.
+        Load = "load",
     }
 }
 choice! {

@@ -79,6 +79,9 @@ pub struct Step {
     pub max_load: Option<f64>,
     /// Mean penetration Δ \[m\], 0 at the highest summit.
     pub mean_penetration_m: f64,
+    /// Displacement of the machine `Δ + cF` \[m\], with the compliance c of its spring; missing under load
+    /// control.
+    pub machine_displacement_m: Option<f64>,
     /// Load F \[N\], positive in compression.
     pub load_n: f64,
     /// Smallest load since the step before, events included \[N\].

@@ -50,6 +50,7 @@ fn step(cycle: &records::Cycle, at: usize, events: EventCounts, max_loads: &[f64
         max_load: of.reversal.and_then(|reversal| max_loads.get(reversal)).copied(),
         // Not −0.
         mean_penetration_m: (of.mean_penetration + 0.0) * units.spacing_m(),
+        machine_displacement_m: Some((of.mean_penetration + 0.0) * units.spacing_m()),
         load_n,
         least_load_n: cycle.least_load(at) * units.load_n(),
         area_m2,

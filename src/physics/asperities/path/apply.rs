@@ -43,7 +43,7 @@ impl EquilibriumPath {
         let problem = &*self.problem();
         let local = &mut self.neighbourhood.local;
         let sense = if local.radius[at] > self.neighbourhood.origin[at] { 1.0 } else { -1.0 };
-        let gap = self.frame.sense * problem.numerics.events.position_tolerance * problem.rms_height_m;
+        let gap = self.frame.sense * problem.numerics.events.position_tolerance * problem.unit_m;
         let potential = gap * local.potential_slope(problem);
         self.log.work_j += gap * local.totals(problem).0;
         local.step_over_fold(problem, at, sense * problem.numerics.events.fold_step, gap);

@@ -103,7 +103,7 @@ impl EquilibriumPath {
         } else {
             let Some(located) = self.locate(&event, target) else { return Ok(Outcome::Absent) };
             let mean_penetration = self.neighbourhood.local.mean_penetration;
-            let tolerance = self.numerics().events.position_tolerance * self.problem().rms_height_m;
+            let tolerance = self.numerics().events.position_tolerance * self.problem().unit_m;
             if queue
                 .iter()
                 .any(|other| (mean_penetration - other.mean_penetration) * self.frame.sense > tolerance)
@@ -175,7 +175,7 @@ impl EquilibriumPath {
             local.solve(problem, Hold::Penetration(watched, bound), effort).ok()?;
         }
         let way = (local.mean_penetration - start) * sense;
-        let inside = way >= -problem.numerics.events.position_tolerance * problem.rms_height_m
+        let inside = way >= -problem.numerics.events.position_tolerance * problem.unit_m
             && (local.mean_penetration - target) * sense <= 0.0;
         inside.then_some(Located::Point)
     }
@@ -202,7 +202,7 @@ impl EquilibriumPath {
         let (limits, touch) = (&problem.numerics.events, problem.numerics.events.merging_overlap);
         for _ in 0..limits.merging_trials {
             if (0.0..=touch).contains(&now)
-                || (high - low).abs() <= limits.position_tolerance * problem.rms_height_m
+                || (high - low).abs() <= limits.position_tolerance * problem.unit_m
             {
                 break;
             }

@@ -119,7 +119,7 @@ impl LocalProblem {
         mut beyond: CurveState,
         effort: &mut Effort,
     ) -> Result<(), NotConverged> {
-        let tolerance = 1e-9 * problem.rms_height_m;
+        let tolerance = 1e-9 * problem.unit_m;
         let mut ends = Illinois::new(before.slope, beyond.slope);
         for _ in 0..60 {
             let span = beyond.at - before.at;
