@@ -1,6 +1,6 @@
 //! Asperities on a probe and on a machine with a spring, against closed forms of JKR theory.
 
-use crate::support::{DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, close, local_contacts, loop_of, near, paper_summits};
+use crate::support::{DEFAULT, LENGTH, Loop, PAPER, RMS, asperity, close, local_contacts, near, paper_summits};
 use hysteron::model::{Boundary, Coalescence, Control, FarField, Interaction, JumpIn, KeptContacts, Machine, Material, Probe};
 use hysteron::physics::asperities::contact::{Problem, Rules};
 use hysteron::physics::asperities::{Asperities, Cycle, Numerics, Options, summits_on_probe};
@@ -83,6 +83,17 @@ fn sphere(length: f64) -> [Summit; 1] {
     [asperity(0.5 * length, 0.5 * length, 0.0, 1e6)]
 }
 
+/// Sums of a loop with one load reversal.
+pub fn sums(cycle: &Cycle) -> Loop {
+    let (turn, back) = (&cycle.steps[cycle.turning[0].0], back(cycle));
+    Loop {
+        loss: turn.work_j + back.last().unwrap().work_j,
+        events: cycle.steps.iter().map(|step| step.dissipated_j).sum(),
+        pull_off: -back.iter().map(|step| step.least_load_n).fold(0.0, f64::min),
+        area: turn.area_m2,
+    }
+}
+
 fn of_units(sums: &Loop) -> [f64; 3] {
     let (_, length, force) = units();
     [sums.loss / (force * length), sums.events / (force * length), sums.pull_off / force]
@@ -99,7 +110,7 @@ fn val_a_sphere_with_a_spring_has_the_loop_of_jkr_theory() {
     close("closed form", loss_with_spring(0.0, 1.0), 7.092_196, 1e-6);
     for (c, allowed) in [(0.0, 1e-6), (0.2, 4e-6), (1.0, 4e-6), (5.0, 4e-6), (100.0, 1e-5)] {
         let found = cycle(&sphere(1e-3), 1e-3, 20.0, &options(ALONE, machine(c), 0.05));
-        let [loss, events, pull_off] = of_units(&loop_of(&found, 0));
+        let [loss, events, pull_off] = of_units(&sums(&found));
         let want = loss_with_spring(c, 1.0);
         // Events are met to 1e-6 of the JKR length, and the work is that of a cubic between states.
         close(&format!("Theta at c = {c}"), loss, want, allowed);
@@ -131,16 +142,16 @@ fn val_two_equal_asperities_share_the_spring() {
         let options = Options { probe: None, ..options(ALONE, machine, 0.05) };
         // The rms height is the unit of the path without a probe.
         let found = Asperities::of_summits(&pair, LENGTH, length, &ADHESIVE, &[max_load], &options).unwrap().run().unwrap();
-        let [loss, events, pull_off] = of_units(&loop_of(&found, 0));
+        let [loss, events, pull_off] = of_units(&sums(&found));
         if control == Control::Load {
             // A jump over δ changes the load by δ/c, with c = 1000/(E*a); the energy by δ²/(2c) = 2e-3 of 16.
             close("Theta", loss, 2.0 * loss_of_load_control(), 2e-3);
             close("pull-off", pull_off, 3.0 * PI, 1e-6);
         } else {
-            close("Theta", loss, loss_with_spring(c, 2.0), 1e-6);
+            close("Theta", loss, loss_with_spring(c, 2.0), 4e-6);
             close("pull-off", pull_off, 3.0 * PI, 2e-3);
         }
-        close("events", events, loss, 1e-6);
+        close("events", events, loss, 4e-6);
     }
 }
 
@@ -159,7 +170,7 @@ fn val_load_control_ends_at_the_maximum_tension() {
     close("over that of displacement control", want / loss_with_spring(0.0, 1.0), 1.143, 1e-3);
     let found = cycle(&sphere(1e-3), 1e-3, 20.0, &options(ALONE, LOAD, 0.05));
     let (_, length, force) = units();
-    let [loss, events, pull_off] = of_units(&loop_of(&found, 0));
+    let [loss, events, pull_off] = of_units(&sums(&found));
     // The jump into contact over 1.949 lengths at c = 1000: δ²/(2c) of 8.1, 2.3e-4; found 2.4e-4.
     close("Theta", loss, want, 3e-4);
     close("events", events, loss, 1e-6);
@@ -185,7 +196,7 @@ fn lim_without_the_spring_of_the_cell_a_contact_is_on_a_half_space() {
         let length = sides * radius;
         let of = |rules: Rules, machine: Machine| {
             let found = cycle(&sphere(length), length, 10.0, &options(rules, machine, 0.05));
-            of_units(&loop_of(&found, 0))
+            of_units(&sums(&found))
         };
         let isolated = of(Rules { boundary: Boundary::Isolated, ..rules }, Machine::default());
         let (cell, half_space) = (of(rules, Machine::default()), of(rules, HALF_SPACE));
@@ -212,8 +223,8 @@ fn rough(interaction: Interaction, coalescence: Coalescence, machine: Machine, p
         numerics: local_contacts(patch),
     };
     let method = Asperities::of_summits(&paper_summits(16, 0), LENGTH, RMS, &PAPER, &[0.0035], &options).unwrap();
-    let sums = loop_of(&method.run().unwrap(), 0);
-    (method, sums)
+    let found = sums(&method.run().unwrap());
+    (method, found)
 }
 
 #[test]
@@ -270,7 +281,7 @@ fn law_asperities_on_a_probe_are_those_of_rough_and_sphere_together() {
     let both = find_summits(both.view(), length, 16.0).unwrap().list;
     let placed = summits_on_probe(&flat, Probe { radius_m: radius }, length, Boundary::Periodic).unwrap();
     let away = |summit: &Summit| (summit.x_m - middle).hypot(summit.y_m - middle);
-    let inside = |list: &[Summit]| list.iter().copied().filter(|summit| away(summit) < 0.12 * length).collect::<Vec<_>>();
+    let inside = |list: &[Summit]| list.iter().copied().filter(|summit| away(summit) < 0.2 * length).collect::<Vec<_>>();
     let (placed, found) = (inside(&placed), inside(&both));
     assert!(placed.len() >= 3 && placed.len() == found.len(), "{} {}", placed.len(), found.len());
     for summit in &placed {
@@ -321,7 +332,7 @@ fn lim_without_adhesion_load_control_retraces() {
     let material = Material { work_of_adhesion_j_m2: 0.0, ..ADHESIVE };
     let options = options(ALONE, LOAD, 0.5);
     let found = Asperities::of_summits(&sphere(1e-3), 1e-3, 1e-6, &material, &[1e-6], &options).unwrap().run().unwrap();
-    assert_eq!(loop_of(&found, 0).loss, 0.0);
+    assert_eq!(sums(&found).loss, 0.0);
     assert!(found.events.iter().filter(|event| event.kind == EventKind::JumpOff).count() == 1);
 }
 

@@ -111,7 +111,7 @@ impl EquilibriumPath {
             let low = if is_event { at + gap } else { at };
             let is_low = load < 0.0 && load <= least + NEAR_PULL_OFF * least.abs();
             if is_low && (is_event || rises) && high - low > gap {
-                let state = self.least_between([low, high], gap)?;
+                let state = self.least_between([low, high], load, gap)?;
                 if state.totals.load_n < least {
                     least = state.totals.load_n;
                     found = Some(state);
@@ -123,9 +123,19 @@ impl EquilibriumPath {
     }
 
     /// The state with the smallest load between two displacements \[m\] without an event, to a tolerance
-    /// \[m\].
-    fn least_between(&mut self, [mut low, mut high]: [f64; 2], tolerance: f64) -> Result<Self, PhysicsError> {
-        let bottom = self.excursion(low)?;
+    /// \[m\]. The load at the lower one is known \[N\]: an excursion may meet the event there a little earlier.
+    fn least_between(
+        &mut self,
+        [mut low, mut high]: [f64; 2],
+        load: f64,
+        tolerance: f64,
+    ) -> Result<Self, PhysicsError> {
+        let (mut bottom, mut further) = (self.excursion(low)?, tolerance);
+        while bottom.totals.load_n > load + NEAR_PULL_OFF * load.abs() && low + further < high {
+            low += further;
+            further *= 4.0;
+            bottom = self.excursion(low)?;
+        }
         let below = bottom.predictor.load_rate_of_all();
         if below >= 0.0 {
             return Ok(bottom);

@@ -58,13 +58,50 @@ fn load_of_all(problem: &Problem, traces: impl Iterator<Item = (usize, Penetrati
     sums
 }
 
+/// Rate of a penetration from which on its radius is the better parameter: near a limit point it is infinite.
+const RATE_OF_CURVE: f64 = 1.2;
+
+/// Two states as a curve in the radius of the contact that is fastest at the end, if that is fast; nothing
+/// where that radius turns back.
+fn short_curve(
+    problem: &Problem,
+    traces: &[(usize, PenetrationTrace, PenetrationTrace)],
+) -> Option<[CurveState; 2]> {
+    let fastest = (0..traces.len()).max_by(|i, j| traces[*i].2.rate.total_cmp(&traces[*j].2.rate))?;
+    if traces[fastest].2.rate < RATE_OF_CURVE {
+        return None;
+    }
+    let curve = [true, false].map(|is_first| {
+        let state = |(i, from, to): &(usize, PenetrationTrace, PenetrationTrace)| {
+            let (asperity, trace) = (&problem.asperities[*i], if is_first { from } else { to });
+            let a = asperity.radius_ahead(trace.penetration_or_nan());
+            (a, trace.speed(asperity, a), trace.at)
+        };
+        let (at, speed, mean_penetration) = state(&traces[fastest]);
+        CurveState {
+            radius: traces.iter().map(|trace| state(trace).0).collect(),
+            direction: traces.iter().map(|trace| state(trace).1 / speed).collect(),
+            mean_penetration,
+            slope: 1.0 / speed,
+            at,
+        }
+    });
+    let [from, to] = &curve;
+    let way = (to.mean_penetration - from.mean_penetration) / (to.at - from.at);
+    (way * from.slope > 0.0 && way * to.slope > 0.0).then_some(curve)
+}
+
 /// `∫F dD` of all contacts between two states without an event, with the load as a cubic in the displacement
-/// D of the machine \[J\].
+/// D of the machine, or in a radius near a limit point \[J\].
 pub(super) fn work_of_all(problem: &Problem, traces: &[(usize, PenetrationTrace, PenetrationTrace)]) -> f64 {
     let Some((_, first, last)) = traces.first() else { return 0.0 };
     let span = last.at - first.at;
     if span == 0.0 {
         return 0.0;
+    }
+    if let Some(curve) = short_curve(problem, traces) {
+        let members: Vec<usize> = traces.iter().map(|(i, ..)| *i).collect();
+        return work_of_all_along(problem, &members, &curve);
     }
     let start = load_of_all(problem, traces.iter().map(|(i, from, _)| (*i, *from)));
     let end = load_of_all(problem, traces.iter().map(|(i, _, to)| (*i, *to)));
