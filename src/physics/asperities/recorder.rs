@@ -6,9 +6,7 @@ use super::contact::state::{State, Status};
 use super::path::EquilibriumPath;
 use super::settings::{Cycle, Settings};
 use crate::PhysicsError;
-use crate::cycle::{
-    Branch, Contact, Effort, Event, MergedAt, Site, Step, StepCounts, StepNumerics, Totals,
-};
+use crate::cycle::{Branch, Contact, Effort, Event, MergedAt, Site, Step, StepCounts, StepNumerics, Totals};
 use crate::event_kind::{EventKind, SpotStatus};
 use crate::model::KeptContacts;
 use serde::{Deserialize, Serialize};

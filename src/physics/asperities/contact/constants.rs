@@ -2,7 +2,7 @@
 
 use super::merging::MAX_TENSILE_LOAD;
 use super::problem::MAX_WU_JUMP_IN;
-use super::spring::{INCREMENTS, LONGEST_SPRING, OUTPUT_STEPS, SOFT_MACHINE};
+use super::spring::{INCREMENTS, LOAD_OF_ONE, LONGEST_SPRING, OUTPUT_STEPS, SOFT_MACHINE};
 use super::transition::ABSORPTION_DISTANCE;
 use crate::constants::Constant;
 
@@ -32,10 +32,10 @@ pub(crate) const CONSTANTS: &[Constant] = &[
     ),
     Constant::new(
         "compliance of load control",
-        &[SOFT_MACHINE],
-        "`1/(E*a_i)`",
-        "Mean of the asperities, `a_i = (R_i²Δγ/E*)^⅓`. In a jump the load changes by the jump over the \
-         compliance.",
+        &[SOFT_MACHINE, LOAD_OF_ONE],
+        "`1/(E*a_i)`, `R_iΔγ`",
+        "Means of the asperities, `a_i = (R_i²Δγ/E*)^⅓`, divided by the number of asperities with the second \
+         load at the largest one. In a jump the load changes by the jump over the compliance.",
         "spring",
     ),
     Constant::new(

@@ -18,10 +18,12 @@
 //! `−3.900265 F/(πE*L)`. A spring of this compliance removes that: the contacts near the middle of the square
 //! are on a half-space. It belongs to the elastic body and not to the machine, and Δ contains it.
 //!
-//! *Load control* is the limit of a soft machine, `c → ∞`: a jump changes the load by its displacement over
-//! c. The compliance is [`SOFT_MACHINE`] times that of one asperity, `1/(E*a_i)` with
-//! `a_i = (R_i²Δγ/E*)^⅓`, but the spring is at most [`LONGEST_SPRING`] units of length long, so that rounding
-//! of D stays below the tolerance of an equilibrium.
+//! *Load control* is the limit of a soft machine, `c → ∞`. A jump over `s` changes the load by `s/c`, and its
+//! dissipated energy differs by `s²/(2c)` from that at fixed load. The compliance is [`SOFT_MACHINE`] times
+//! that of the asperities which would carry the largest load, [`LOAD_OF_ONE`] `R_iΔγ` each: `1/(E*a_i)` for
+//! one, with `a_i = (R_i²Δγ/E*)^⅓`. The spring is at most [`LONGEST_SPRING`] units of length long, so that
+//! rounding of D stays below the tolerance of an equilibrium. The path does not end where the machine does,
+//! but at the smallest load on it, which does not depend on c: there `dF/dΔ = 0`, or the contact jumps.
 //!
 //! A spring softer than that of the cell couples all contacts strongly. Local problems then hold all of them,
 //! and each avalanche is followed by a global solve: no response is neglected. Since D changes by `1 + cK` of
@@ -33,6 +35,9 @@ use crate::model::{Boundary, CELL_CONSTANT, Control, FarField, Interaction, Mach
 
 /// Compliance of the spring of load control, over the mean one of an asperity.
 pub(super) const SOFT_MACHINE: f64 = 1000.0;
+
+/// Load that one asperity carries, in `R_iΔγ`: several times its pull-off force.
+pub(super) const LOAD_OF_ONE: f64 = 20.0;
 
 /// Longest spring of load control at the largest load, in units of length.
 pub(super) const LONGEST_SPRING: f64 = 2e4;
@@ -93,7 +98,10 @@ impl Problem {
         let adhesion = self.material.adhesion_length_m();
         let radii = self.asperities.iter().map(|asperity| (asperity.radius_m().powi(2) * adhesion).cbrt());
         let mean = radii.sum::<f64>() / self.len() as f64;
-        let soft = SOFT_MACHINE / (self.material.contact_modulus_pa * mean);
+        let radius =
+            self.asperities.iter().map(|asperity| asperity.radius_m()).sum::<f64>() / self.len() as f64;
+        let carrying = most_load_n / (LOAD_OF_ONE * radius * self.material.work_of_adhesion_j_m2);
+        let soft = SOFT_MACHINE / (self.material.contact_modulus_pa * mean * carrying.max(1.0));
         soft.min(LONGEST_SPRING * self.unit_m / most_load_n.max(f64::MIN_POSITIVE))
     }
 

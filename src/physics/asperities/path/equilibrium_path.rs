@@ -219,8 +219,8 @@ impl EquilibriumPath {
     /// Precision at the end of an increment: exact on a grid, where most states are written down, and at a
     /// bound.
     fn precision_at(&self, target: f64, bound: Option<f64>) -> Precision {
-        let exact = bound == Some(target)
-            || is_multiple(target, self.accuracy().exact_grid * self.problem().unit_m);
+        let exact =
+            bound == Some(target) || is_multiple(target, self.accuracy().exact_grid * self.problem().unit_m);
         if exact { Precision::Exact } else { self.precision_between() }
     }
 

@@ -84,8 +84,12 @@ impl EquilibriumPath {
             return None;
         }
         let rate = |i: usize| self.predictor.traces[i].rate;
-        let fastest =
-            self.state().contacts.iter().copied().max_by(|i, j| rate(*i).total_cmp(&rate(*j)).then(j.cmp(i)))?;
+        let fastest = self
+            .state()
+            .contacts
+            .iter()
+            .copied()
+            .max_by(|i, j| rate(*i).total_cmp(&rate(*j)).then(j.cmp(i)))?;
         (rate(fastest) > RATE_AT_FOLD)
             .then(|| PredictedEvent { mean_penetration: target, transition: Transition::jump_off(fastest) })
     }

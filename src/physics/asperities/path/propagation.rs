@@ -335,8 +335,11 @@ impl EquilibriumPath {
             if problem.spring.moves_as_one {
                 together.push((i, from, trace));
             } else {
-                self.log.work_j +=
-                    if along_curve { work_along(problem, i, k, curve) } else { work(problem, i, from, trace) };
+                self.log.work_j += if along_curve {
+                    work_along(problem, i, k, curve)
+                } else {
+                    work(problem, i, from, trace)
+                };
             }
             traces.push((i, *a, trace));
         }

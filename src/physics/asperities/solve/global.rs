@@ -131,8 +131,8 @@ impl GlobalSolver {
     fn on_spring(&mut self, mut step: Vec<f64>, uniform: Option<Solution>) -> Vec<f64> {
         let Some(uniform) = uniform.map(|found| self.count(found)) else { return step };
         let field = &self.problem.field;
-        let share = field.by_spring_along(&self.spots, &step)
-            / (1.0 + field.by_spring_along(&self.spots, &uniform));
+        let share =
+            field.by_spring_along(&self.spots, &step) / (1.0 + field.by_spring_along(&self.spots, &uniform));
         step.iter_mut().zip(&uniform).for_each(|(s, u)| *s -= share * u);
         step
     }
