@@ -102,7 +102,8 @@ impl BranchRun for AsperityRun<'_> {
 }
 
 impl Asperities {
-    /// Loads to the mean penetration `turn` \[m\], or to this displacement of a machine, and unloads from there, under displacement control alone.
+    /// Loads to the mean penetration `turn` \[m\], or to this displacement of a machine, and unloads from
+    /// there, under displacement control alone.
     ///
     /// The load at the reversal may be tensile. `max_loads` of the settings is not used, and the unloading
     /// steps have none.

@@ -47,8 +47,8 @@ pub struct Options {
     pub probe: Option<Probe>,
     /// Machine that moves the surface.
     pub machine: Machine,
-    /// Step of mean penetration over the rms height, or over the JKR length of the probe. It does not change results, which are located between
-    /// the steps.
+    /// Step of mean penetration over the rms height, or over the JKR length of the probe. It does not change
+    /// results, which are located between the steps.
     pub approach_step: f64,
     /// Steps of which the contact spots are kept.
     pub contacts: KeptContacts,
@@ -102,7 +102,8 @@ impl Asperities {
     /// surface; the options put them on a probe.
     ///
     /// # Errors
-    /// No asperities; a radius of the probe that is not positive; Tabor parameters below 2 with Wu's criterion.
+    /// No asperities; a radius of the probe that is not positive; Tabor parameters below 2 with Wu's
+    /// criterion.
     pub fn of_summits(
         summits: &[Summit],
         length_m: f64,

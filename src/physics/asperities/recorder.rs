@@ -216,7 +216,7 @@ impl Recorder {
             mean_penetration_m: problem.mean_penetration_m(state.mean_penetration_m, load_n),
             machine_displacement_m: (!problem.spring.holds_load).then_some(state.mean_penetration_m),
             load_n,
-            least_load_n: ways.iter().copied().fold(at.totals().load_n, f64::min),
+            least_load_n: ways.iter().copied().fold(load_n, f64::min),
             area_m2: at.totals().area_m2,
             area_union_m2: super::contact::union_area::area(problem, state),
             counts: counts(at, &recent),
@@ -228,23 +228,7 @@ impl Recorder {
         self.ways_before += ways.len();
         self.effort_before = effort;
         cycle.events.extend(recent.iter().map(|event| recorded(event, number, problem)));
-        let keep = match settings.contacts {
-            KeptContacts::All => true,
-            KeptContacts::Turning => {
-                reason == StepReason::Reversal || self.passes_landmark(settings, problem, at.totals().load_n)
-            }
-            KeptContacts::None => false,
-        };
-        if keep {
-            cycle.contacts.extend(spots_of(problem, state, number));
-        }
-        let load = at.totals().load_n;
-        let pulls = load < self.pulled.as_ref().map_or(0.0, |pulled| pulled.0);
-        if settings.contacts == KeptContacts::Turning && self.branch == Branch::Unloading && pulls {
-            // The spots of a kept step are stored already.
-            self.pulled = Some((load, if keep { Vec::new() } else { spots_of(problem, state, number) }));
-        }
-        self.load_before = Some(load);
+        self.keep_spots(settings, at, cycle, reason);
         let merged = state.merged.iter().enumerate().skip(self.merged_before);
         cycle.merged.extend(merged.map(|(k, spot)| MergedAt {
             step: number,
@@ -253,6 +237,34 @@ impl Recorder {
         }));
         self.merged_before = state.merged.len();
         path.begin_record();
+    }
+
+    /// Keeps the spots of the step that was recorded last, if the settings select it.
+    fn keep_spots(
+        &mut self,
+        settings: &Settings,
+        at: &EquilibriumPath,
+        cycle: &mut Cycle,
+        reason: StepReason,
+    ) {
+        let (problem, state, load, number) =
+            (&*at.problem(), at.state(), at.totals().load_n, cycle.steps.len() - 1);
+        let keep = match settings.contacts {
+            KeptContacts::All => true,
+            KeptContacts::Turning => {
+                reason == StepReason::Reversal || self.passes_landmark(settings, problem, load)
+            }
+            KeptContacts::None => false,
+        };
+        if keep {
+            cycle.contacts.extend(spots_of(problem, state, number));
+        }
+        let pulls = load < self.pulled.as_ref().map_or(0.0, |pulled| pulled.0);
+        if settings.contacts == KeptContacts::Turning && self.branch == Branch::Unloading && pulls {
+            // The spots of a kept step are stored already.
+            self.pulled = Some((load, if keep { Vec::new() } else { spots_of(problem, state, number) }));
+        }
+        self.load_before = Some(load);
     }
 }
 

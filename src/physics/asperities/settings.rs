@@ -24,7 +24,8 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Spacing of the grid of mean penetrations, or of displacements of a machine \[m\], common to both senses and all load reversals.
+    /// Spacing of the grid of mean penetrations, or of displacements of a machine \[m\], common to both
+    /// senses and all load reversals.
     pub(super) fn grid(&self, problem: &Problem) -> f64 {
         self.approach_step * problem.output_unit_m()
     }

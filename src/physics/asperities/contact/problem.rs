@@ -2,7 +2,6 @@
 
 use super::neighbours::Neighbours;
 use super::numbering::Places;
-use super::spring::Spring;
 use crate::PhysicsError;
 use crate::asperities::field::spot_field::{Spot, spot_field_as_printed};
 use crate::asperities::field::{FieldSum, Spots, choose};
@@ -76,6 +75,21 @@ pub struct Problem {
     pub unit_m: f64,
     /// Springs in series with the contact.
     pub(crate) spring: Spring,
+}
+
+/// Springs in series with a contact, see [`super::spring`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Spring {
+    /// Compliance of the machine \[m/N\], the part that is not a part of the mean penetration.
+    pub(crate) machine_m_n: f64,
+    /// True under load control.
+    pub(crate) holds_load: bool,
+    /// True if all contacts are solved together.
+    pub(crate) moves_as_one: bool,
+    /// Number of doublings by which increments may be longer.
+    pub(super) doublings: u32,
+    /// What it adds to the unit of the output steps of D \[m\].
+    pub(super) output_m: f64,
 }
 
 /// Lower limit of Wu's jump-in penetration, as a fraction of the jump-off penetration.

@@ -29,7 +29,7 @@
 //! and each avalanche is followed by a global solve: no response is neglected. Since D changes by `1 + cK` of
 //! Δ, with the stiffness K of the contact, increments may be longer by a power of two.
 
-use super::problem::Problem;
+use super::problem::{Problem, Spring};
 use crate::asperities::numerics::{Events, Numerics, Steps};
 use crate::model::{Boundary, CELL_CONSTANT, Control, FarField, Interaction, Machine};
 
@@ -47,21 +47,6 @@ pub(super) const INCREMENTS: f64 = 2000.0;
 
 /// Number of output steps of length 1 into which it is divided.
 pub(super) const OUTPUT_STEPS: f64 = 10.0;
-
-/// Springs in series with a contact.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Spring {
-    /// Compliance of the machine \[m/N\], the part that is not a part of the mean penetration.
-    pub(crate) machine_m_n: f64,
-    /// True under load control.
-    pub(crate) holds_load: bool,
-    /// True if all contacts are solved together.
-    pub(crate) moves_as_one: bool,
-    /// Number of doublings by which increments may be longer.
-    pub(super) doublings: u32,
-    /// What it adds to the unit of the output steps of D \[m\].
-    output_m: f64,
-}
 
 impl Problem {
     /// Puts the contact on a machine, with the largest load of the cycle \[N\].

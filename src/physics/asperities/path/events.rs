@@ -77,8 +77,9 @@ impl EquilibriumPath {
         queue
     }
 
-    /// The end of the branch of the fastest contact, where a soft spring may make all contacts unstable at once
-    /// before any of them is at the end of its own branch. It is looked for along the curve of that contact.
+    /// The end of the branch of the fastest contact, where a soft spring may make all contacts unstable at
+    /// once before any of them is at the end of its own branch. It is looked for along the curve of that
+    /// contact.
     fn common_fold(&self, target: f64) -> Option<PredictedEvent> {
         if !self.problem().spring.moves_as_one || self.frame.sense > 0.0 {
             return None;

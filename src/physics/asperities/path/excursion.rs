@@ -5,8 +5,8 @@ use super::step_control::StepControl;
 use crate::PhysicsError;
 use crate::math::bracket::{End, Illinois};
 
-/// Relative load above the smallest one so far up to which a lower one is looked for: with the machine of load
-/// control the contact goes on beyond the minimum, until `1 + c dF/dΔ = 0`.
+/// Relative load above the smallest one so far up to which a lower one is looked for: with the machine of
+/// load control the contact goes on beyond the minimum, until `1 + c dF/dΔ = 0`.
 const NEAR_PULL_OFF: f64 = 1e-3;
 
 /// Maximum number of excursions that locate a pull-off.
@@ -123,7 +123,8 @@ impl EquilibriumPath {
     }
 
     /// The state with the smallest load between two displacements \[m\] without an event, to a tolerance
-    /// \[m\]. The load at the lower one is known \[N\]: an excursion may meet the event there a little earlier.
+    /// \[m\]. The load at the lower one is known \[N\]: an excursion may meet the event there a little
+    /// earlier.
     fn least_between(
         &mut self,
         [mut low, mut high]: [f64; 2],

@@ -347,7 +347,8 @@ impl EquilibriumPath {
         self.predictor.replace_all(problem, &traces);
     }
 
-    /// Work of all contacts, which a soft spring moves together \[J\]: along a solution curve if there is one.
+    /// Work of all contacts, which a soft spring moves together \[J\]: along a solution curve if there is
+    /// one.
     fn work_together(
         &self,
         together: &[(usize, PenetrationTrace, PenetrationTrace)],
