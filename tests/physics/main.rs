@@ -22,6 +22,7 @@ mod jkr;
 mod kernel;
 mod layout;
 mod ledger;
+mod machine;
 mod measured;
 mod merge;
 mod pair;

@@ -102,7 +102,8 @@ impl BranchRun for AsperityRun<'_> {
 }
 
 impl Asperities {
-    /// Loads to the mean penetration `turn` \[m\] and unloads from there, under displacement control alone.
+    /// Loads to the mean penetration `turn` \[m\], or to this displacement of a machine, and unloads from
+    /// there, under displacement control alone.
     ///
     /// The load at the reversal may be tensile. `max_loads` of the settings is not used, and the unloading
     /// steps have none.
@@ -183,9 +184,10 @@ fn load(
         }
         let Some(max_load) = settings.max_loads.get(cycle.turning.len()) else { return Ok(Next::End) };
         recorder.grid_points(settings, path, cycle)?;
-        let (reached, mean_penetration_m) =
-            (path.totals().load_n / problem.load_unit_n(), path.state().mean_penetration_m);
-        if mean_penetration_m > 100.0 * problem.rms_height_m {
+        let load_n = path.totals().load_n;
+        let reached = load_n / problem.load_unit_n();
+        let mean_penetration_m = problem.mean_penetration_m(path.state().mean_penetration_m, load_n);
+        if mean_penetration_m > problem.farthest_m() {
             return Err(LoopError::LoadNotReached { wanted: *max_load, reached, mean_penetration_m }.into());
         }
         progress(LoopPosition {
@@ -212,6 +214,9 @@ fn unload(
     let mut full = None;
     let left = travel(problem, carried, None, &mut |path| {
         let full = *full.get_or_insert(path.totals().area_m2);
+        if problem.spring.holds_load {
+            recorder.pull_off(settings, path, cycle)?;
+        }
         recorder.grid_points(settings, path, cycle)?;
         let load = path.totals().load_n / problem.load_unit_n();
         progress(LoopPosition {

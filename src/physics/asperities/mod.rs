@@ -11,13 +11,14 @@ mod cycle;
 pub mod field;
 pub mod numerics;
 pub mod path;
+mod probe;
 mod recorder;
 mod retrace;
 mod settings;
 pub(crate) mod solve;
 
 use crate::cycle::Method;
-use crate::model::{KeptContacts, Material};
+use crate::model::{KeptContacts, Machine, Material, Probe};
 use crate::surface::HeightMap;
 use crate::surface::measured::find_measured;
 use crate::surface::summits::{Summit, find_summits};
@@ -27,6 +28,7 @@ use contact::{Problem, Rules, State};
 pub use cycle::Checkpoint;
 use cycle::{AsperityRun, unload_through};
 pub use numerics::Numerics;
+pub use probe::summits_on_probe;
 pub use settings::{Cycle, Settings};
 
 /// Versions of cycles of the asperity model.
@@ -41,8 +43,12 @@ const VERSIONS: &[(u32, &str)] = &[
 pub struct Options {
     /// Options of the contact model.
     pub rules: Rules,
-    /// Step of mean penetration over the rms height. It does not change results, which are located between
-    /// the steps.
+    /// Sphere that carries the asperities, if the surface is not flat.
+    pub probe: Option<Probe>,
+    /// Machine that moves the surface.
+    pub machine: Machine,
+    /// Step of mean penetration over the rms height, or over the JKR length of the probe. It does not change
+    /// results, which are located between the steps.
     pub approach_step: f64,
     /// Steps of which the contact spots are kept.
     pub contacts: KeptContacts,
@@ -54,6 +60,8 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             rules: Rules::default(),
+            probe: None,
+            machine: Machine::default(),
             approach_step: 0.01,
             contacts: KeptContacts::Turning,
             numerics: Numerics::DEFAULT,
@@ -90,10 +98,12 @@ impl Asperities {
         Self::of_summits(&summits, map.length_m, map.rms_height_m, material, max_loads, options)
     }
 
-    /// Given asperities on a square of a side \[m\], with the rms height \[m\] of the surface.
+    /// Given asperities of a flat surface on a square of a side \[m\], with the rms height \[m\] of the
+    /// surface; the options put them on a probe.
     ///
     /// # Errors
-    /// No asperities; Tabor parameters below 2 with Wu's criterion.
+    /// No asperities; a radius of the probe that is not positive; Tabor parameters below 2 with Wu's
+    /// criterion.
     pub fn of_summits(
         summits: &[Summit],
         length_m: f64,
@@ -102,9 +112,18 @@ impl Asperities {
         max_loads: &[f64],
         options: &Options,
     ) -> Result<Self, PhysicsError> {
-        let Options { approach_step, contacts, numerics, .. } = *options;
-        let problem =
-            Problem::new(summits, length_m, rms_height_m, *material, options.rules)?.with_numerics(numerics);
+        let Options { rules, probe, machine, approach_step, contacts, numerics } = *options;
+        let on_probe = match probe {
+            Some(probe) => summits_on_probe(summits, probe, length_m, rules.boundary)?,
+            None => summits.to_vec(),
+        };
+        // Without adhesion the roughness sets the scale.
+        let unit_m = probe.map(|probe| probe.jkr_length_m(material)).filter(|unit| *unit > 0.0);
+        let problem = Problem::new(&on_probe, length_m, rms_height_m, *material, rules)?
+            .with_unit(unit_m.unwrap_or(rms_height_m))
+            .with_numerics(numerics);
+        let most_load_n = max_loads.iter().copied().fold(0.0, f64::max) * problem.load_unit_n();
+        let problem = problem.on_machine(&machine, most_load_n);
         let rest_every =
             (summits.len() >= numerics.steps.checkpoints_from).then_some(numerics.steps.checkpoint_interval);
         Ok(Self {

@@ -2,6 +2,7 @@
 
 use super::merging::MAX_TENSILE_LOAD;
 use super::problem::MAX_WU_JUMP_IN;
+use super::spring::{INCREMENTS, LOAD_OF_ONE, LONGEST_SPRING, OUTPUT_STEPS, SOFT_MACHINE};
 use super::transition::ABSORPTION_DISTANCE;
 use crate::constants::Constant;
 
@@ -28,5 +29,27 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "`δ_off`",
         "Wu's criterion is not used beyond this penetration.",
         "problem",
+    ),
+    Constant::new(
+        "compliance of load control",
+        &[SOFT_MACHINE, LOAD_OF_ONE],
+        "`1/(E*a_i)`, `R_iΔγ`",
+        "Means of the asperities, `a_i = (R_i²Δγ/E*)^⅓`, divided by the number of asperities with the second \
+         load at the largest one. In a jump the load changes by the jump over the compliance.",
+        "spring",
+    ),
+    Constant::new(
+        "longest spring of load control",
+        &[LONGEST_SPRING],
+        "`h_rms`",
+        "At the largest load. A softer spring would exceed the precision of an equilibrium.",
+        "spring",
+    ),
+    Constant::new(
+        "parts of the length of a spring",
+        &[INCREMENTS, OUTPUT_STEPS],
+        "",
+        "At the largest load: longest increments, and output steps of relative length 1.",
+        "spring",
     ),
 ];

@@ -8,6 +8,7 @@ pub(crate) mod neighbours;
 mod numbering;
 pub(crate) mod problem;
 pub mod rows;
+pub(crate) mod spring;
 pub(crate) mod state;
 pub(crate) mod transition;
 pub mod union_area;

@@ -68,8 +68,28 @@ pub struct Problem {
     pub(crate) numerics: Numerics,
     /// Side of the square L \[m\].
     pub length_m: f64,
-    /// Rms height, unit of the mean penetration \[m\].
+    /// Rms height of the surface \[m\].
     pub rms_height_m: f64,
+    /// Unit of the mean penetration, in which steps, tolerances and limits are given \[m\]: the rms height,
+    /// or the JKR length of a probe.
+    pub unit_m: f64,
+    /// Springs in series with the contact.
+    pub(crate) spring: Spring,
+}
+
+/// Springs in series with a contact, see [`super::spring`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Spring {
+    /// Compliance of the machine \[m/N\], the part that is not a part of the mean penetration.
+    pub(crate) machine_m_n: f64,
+    /// True under load control.
+    pub(crate) holds_load: bool,
+    /// True if all contacts are solved together.
+    pub(crate) moves_as_one: bool,
+    /// Number of doublings by which increments may be longer.
+    pub(super) doublings: u32,
+    /// What it adds to the unit of the output steps of D \[m\].
+    pub(super) output_m: f64,
 }
 
 /// Lower limit of Wu's jump-in penetration, as a fraction of the jump-off penetration.
@@ -84,6 +104,12 @@ impl Problem {
     pub fn with_numerics(self, numerics: Numerics) -> Self {
         let events = Events { local_contacts: numerics.events.local_contacts.max(1), ..numerics.events };
         Self { numerics: Numerics { events, ..numerics }, ..self }
+    }
+
+    /// Sets the unit of the mean penetration \[m\], for a surface whose rms height does not set the scale.
+    #[must_use]
+    pub fn with_unit(self, unit_m: f64) -> Self {
+        Self { unit_m, ..self }
     }
 
     /// Sets the number of spots from which fast sums are used.
@@ -152,6 +178,8 @@ impl Problem {
             rules,
             length_m,
             rms_height_m,
+            unit_m: rms_height_m,
+            spring: Spring::default(),
         })
     }
 
@@ -166,11 +194,22 @@ impl Problem {
         self.numerics.events.local_contacts >= self.summits()
     }
 
-    /// Residual below which a state is an equilibrium \[m\]: `1e-8 h_rms`, the error of fast sums, or
-    /// `1e-10 h_rms` with fewer than 300 asperities or without interaction, where sums are direct.
+    /// Mean penetration beyond which the load is not looked for \[m\]: 100 units, below the lowest asperity
+    /// of a probe.
+    pub(crate) fn farthest_m(&self) -> f64 {
+        let lowest = if self.unit_m == self.rms_height_m {
+            0.0
+        } else {
+            self.heights[..self.summits()].iter().copied().fold(0.0, f64::min)
+        };
+        100.0 * self.unit_m - lowest
+    }
+
+    /// Residual below which a state is an equilibrium \[m\]: `1e-8` units, the error of fast sums, or
+    /// `1e-10` units with fewer than 300 asperities or without interaction, where sums are direct.
     #[must_use]
     pub fn tolerance_m(&self) -> f64 {
-        self.field.precision() * self.rms_height_m
+        self.field.precision() * self.unit_m
     }
 
     /// Mean penetration at which the first asperity jumps into contact \[m\]: below zero with Wu's rule.

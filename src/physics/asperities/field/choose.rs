@@ -47,7 +47,7 @@ pub fn choose(
     let many = if boundary == Boundary::Periodic { FAST_FROM_PERIODIC } else { FAST_FROM_ISOLATED };
     let full = DirectSum::new(positions, length_m, material, kind, boundary, slips);
     let rough = full.to_six_digits();
-    FieldSum { direct: PerPrecision { full, rough }, fast, many }
+    FieldSum { direct: PerPrecision { full, rough }, fast, many, uniform: 0.0 }
 }
 
 /// Precision of a sum over contacts.
@@ -82,6 +82,8 @@ pub struct FieldSum {
     fast: Option<PerPrecision<FastSum>>,
     /// Number of contact spots from which the fast sum is used.
     many: usize,
+    /// Displacement of all asperities over the total load \[m/N\]: a spring in series with the contact.
+    uniform: f64,
 }
 
 impl FieldSum {
@@ -91,7 +93,28 @@ impl FieldSum {
         if self.fast.is_some() { TOLERANCE } else { DIRECT_TOLERANCE }
     }
 
-    /// Sum for targets that are the spots themselves.
+    /// Sets the compliance of a spring in series with the contact \[m/N\].
+    pub(crate) fn with_uniform(self, uniform: f64) -> Self {
+        Self { uniform, ..self }
+    }
+
+    /// Compliance of the spring in series with the contact \[m/N\].
+    pub(crate) fn uniform(&self) -> f64 {
+        self.uniform
+    }
+
+    /// Displacement of all asperities by the spring in series with the contact \[m\].
+    pub(crate) fn by_spring(&self, spots: &Spots) -> f64 {
+        self.uniform * spots.columns.load[..spots.columns.len()].iter().sum::<f64>()
+    }
+
+    /// Change of [`Self::by_spring`] over changes of the radii of the spots \[m\].
+    pub(crate) fn by_spring_along(&self, spots: &Spots, changes: &[f64]) -> f64 {
+        let slopes = &spots.columns.load_slope[..spots.columns.len()];
+        self.uniform * slopes.iter().zip(changes).map(|(slope, change)| slope * change).sum::<f64>()
+    }
+
+    /// Sum for targets that are the spots themselves, without the spring.
     ///
     /// [`SumPrecision::Intermediate`] allows an error of 1e-6 if the fast sum is used; the direct sum is
     /// exact.
@@ -102,7 +125,7 @@ impl FieldSum {
         }
     }
 
-    /// Sum for other targets; with few targets the direct sum is cheaper than a mesh.
+    /// Sum for other targets, without the spring; with few targets the direct sum is cheaper than a mesh.
     pub(crate) fn for_targets(
         &self,
         spots: &Spots,
@@ -126,6 +149,20 @@ impl FieldSum {
         effort: &mut Effort,
     ) {
         self.direct.full.among(spots, table, fields, slopes, effort);
+        if self.uniform != 0.0 {
+            let (n, by_spring) = (spots.columns.len(), self.by_spring(spots));
+            fields.iter_mut().for_each(|field| *field += by_spring);
+            for row in slopes.chunks_mut(n.max(1)) {
+                self.add_slopes(spots, row);
+            }
+        }
+    }
+
+    /// Adds the derivatives of the displacement by the spring to the radii of the spots.
+    fn add_slopes(&self, spots: &Spots, row: &mut [f64]) {
+        for (slope, load_slope) in row.iter_mut().zip(&spots.columns.load_slope) {
+            *slope += self.uniform * load_slope;
+        }
     }
 
     /// Tabulates the image sums of all pairs if there are few enough asperities.
@@ -156,12 +193,24 @@ impl FieldSum {
 
     /// Displacements by few spots at many targets, see [`DirectSum::at_many`].
     pub(crate) fn at_many(&self, spots: &[(f64, Spot)], targets: impl Iterator<Item = usize>) -> Vec<f64> {
-        self.direct.full.at_many(spots, targets)
+        if self.uniform == 0.0 {
+            return self.direct.full.at_many(spots, targets);
+        }
+        let (targets, by_spring): (Vec<usize>, f64) = (targets.collect(), self.of_spring(spots));
+        let mut found = self.direct.full.at_many(spots, targets.iter().copied());
+        targets.into_iter().for_each(|target| found[target] += by_spring);
+        found
+    }
+
+    /// Displacement by the spring, with loads that are added or subtracted \[m\].
+    fn of_spring(&self, spots: &[(f64, Spot)]) -> f64 {
+        self.uniform * spots.iter().map(|(sign, spot)| sign * spot.load).sum::<f64>()
     }
 
     /// Displacement at a target by spots that are added or subtracted, see [`DirectSum::at_one`].
     pub(crate) fn at_one(&self, spots: &[(f64, Spot)], target: usize) -> f64 {
-        self.direct.full.at_one(spots, target)
+        let field = self.direct.full.at_one(spots, target);
+        if self.uniform == 0.0 { field } else { field + self.of_spring(spots) }
     }
 
     /// Displacements and derivatives at targets by direct sums, see [`DirectSum::rows`]. Intermediate sums
@@ -172,9 +221,19 @@ impl FieldSum {
         targets: &[usize],
         precision: SumPrecision,
         effort: &mut Effort,
-        visit: impl FnMut(usize, f64, &[f64]),
+        mut visit: impl FnMut(usize, f64, &[f64]),
     ) {
-        self.direct.of(precision).rows(spots, targets, effort, visit);
+        let direct = self.direct.of(precision);
+        if self.uniform == 0.0 {
+            return direct.rows(spots, targets, effort, visit);
+        }
+        let (by_spring, mut whole) = (self.by_spring(spots), Vec::new());
+        direct.rows(spots, targets, effort, |k, field, slopes| {
+            whole.clear();
+            whole.extend_from_slice(slopes);
+            self.add_slopes(spots, &mut whole);
+            visit(k, field + by_spring, &whole);
+        });
     }
 
     /// Displacements far from a load, see [`DirectSum::far_from_load`].
@@ -185,12 +244,22 @@ impl FieldSum {
         reach: f64,
         targets: &[usize],
     ) -> Vec<f64> {
-        self.direct.rough.far_from_load(load, place, reach, targets)
+        let mut found = self.direct.rough.far_from_load(load, place, reach, targets);
+        if self.uniform != 0.0 {
+            // Targets within the reach have no displacement.
+            found.iter_mut().filter(|field| **field != 0.0).for_each(|field| *field += self.uniform * load);
+        }
+        found
     }
 
     /// Displacements by loads next to one another, see [`DirectSum::of_loads`].
     pub(crate) fn of_loads(&self, loads: &[PointLoad], centre: &[f64; 2], targets: &[usize]) -> Vec<f64> {
-        self.direct.rough.of_loads(loads, centre, targets)
+        let mut found = self.direct.rough.of_loads(loads, centre, targets);
+        if self.uniform != 0.0 {
+            let by_spring = self.uniform * loads.iter().map(|load| load.load_n).sum::<f64>();
+            found.iter_mut().for_each(|field| *field += by_spring);
+        }
+        found
     }
 }
 
@@ -208,6 +277,10 @@ impl Interaction for FieldSum {
             displacements,
             effort,
         );
+        if self.uniform != 0.0 {
+            let by_spring = self.by_spring(spots);
+            displacements.iter_mut().for_each(|field| *field += by_spring);
+        }
     }
 
     fn linearise(

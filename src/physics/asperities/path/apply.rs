@@ -43,7 +43,7 @@ impl EquilibriumPath {
         let problem = &*self.problem();
         let local = &mut self.neighbourhood.local;
         let sense = if local.radius[at] > self.neighbourhood.origin[at] { 1.0 } else { -1.0 };
-        let gap = self.frame.sense * problem.numerics.events.position_tolerance * problem.rms_height_m;
+        let gap = self.frame.sense * problem.numerics.events.position_tolerance * problem.unit_m;
         let potential = gap * local.potential_slope(problem);
         self.log.work_j += gap * local.totals(problem).0;
         local.step_over_fold(problem, at, sense * problem.numerics.events.fold_step, gap);
@@ -57,12 +57,14 @@ impl EquilibriumPath {
         transition: Transition,
         before: &mut Before,
     ) -> Result<Option<Vec<Transition>>, Rejection> {
+        let load_n = self.neighbourhood.local.totals(&self.problem()).0;
         let Some(entered) = self.insert_or_remove(transition, before)? else { return Ok(None) };
         let problem = &*self.problem();
         let uncovers = transition.kind == EventKind::Uncover;
         let mean_penetration = self.neighbourhood.local.mean_penetration;
         let mut applied = vec![entered];
         let (local, effort) = (&mut self.neighbourhood.local, &mut self.solver.effort);
+        local.follow_spring(problem, load_n);
         let start = local.radius.clone();
         if !(local.solve(problem, Hold::MeanPenetration, effort).is_ok() && local.rates(problem).1) {
             local.radius = start;

@@ -77,7 +77,8 @@ impl EquilibriumPath {
             }
         }
         self.close_avalanche(&avalanche.moved);
-        propagated &= avalanche.moved.len() < self.numerics().events.large_avalanche;
+        propagated &= avalanche.moved.len() < self.numerics().events.large_avalanche
+            && !self.problem().spring.moves_as_one;
         Ok(propagated.then_some(avalanche.open))
     }
 

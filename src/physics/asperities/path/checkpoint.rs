@@ -62,9 +62,9 @@ impl PathCheckpoint {
         let (summits, steps) = (problem.asperities.base(), &problem.numerics.steps);
         let off = summits.iter().map(|a| a.jump_off_penetration().abs()).sum::<f64>() / summits.len() as f64;
         // Where adhesion is weak, the roughness sets the scale.
-        let off = off.max(steps.min_scale * problem.rms_height_m);
+        let off = off.max(steps.min_scale * problem.unit_m);
         // A power of two of the grid, so that round output steps end increments.
-        let unit = steps.exact_grid * problem.rms_height_m;
+        let unit = steps.exact_grid * problem.unit_m;
         let share = if problem.solves_whole() {
             steps.longest_increment_of_whole()
         } else {
@@ -74,12 +74,12 @@ impl PathCheckpoint {
         Self {
             state,
             sense,
-            lengths: (longest, longest / share),
+            lengths: (problem.increment_growth() * longest, longest / share),
             log: EventLog::default(),
             totals: Totals::default(),
             balance: 0.0,
             events: 0,
-            halvings: 0,
+            halvings: problem.increments().max_halvings - steps.max_halvings,
             chatter: ChatterGuard::default(),
             effort: Effort::default(),
             parted: None,

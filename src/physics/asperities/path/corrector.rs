@@ -4,7 +4,7 @@ use super::arrival::Arrival;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
 use super::triggers::Trigger;
-use super::work::work;
+use super::work::{work, work_of_all};
 use crate::Reason;
 use crate::asperities::contact::Status;
 use crate::asperities::contact::transition::Transition;
@@ -199,7 +199,7 @@ impl EquilibriumPath {
         let problem = &*self.problem();
         let has_jumped = since != Since::Growth;
         let target = self.state().mean_penetration_m;
-        let mut relaxed = 0.0;
+        let (mut relaxed, mut together) = (0.0, Vec::new());
         for (k, rate) in rates.iter().enumerate() {
             let i = self.state().contacts[k];
             let (asperity, a) = (&problem.asperities[i], self.state().radius[i]);
@@ -207,7 +207,11 @@ impl EquilibriumPath {
             let from = self.predictor.traces[i];
             if from.is_known() {
                 let to = if has_jumped { from.moved_to(target) } else { trace };
-                self.log.work_j += work(problem, i, from, to);
+                if problem.spring.moves_as_one && !has_jumped {
+                    together.push((i, from, to));
+                } else {
+                    self.log.work_j += work(problem, i, from, to);
+                }
                 if has_jumped {
                     let more = asperity.load(a) - asperity.load(from.radius_ahead(asperity, target));
                     // A contact that has merged since has nothing pending.
@@ -217,6 +221,7 @@ impl EquilibriumPath {
             }
             self.predictor.traces[i] = trace;
         }
+        self.log.work_j += work_of_all(problem, &together);
         (relaxed, grown)
     }
 
@@ -225,7 +230,7 @@ impl EquilibriumPath {
     fn predict_jump_ins(&mut self, rates: &[f64]) {
         let problem = &*self.problem();
         let target = self.state().mean_penetration_m;
-        let all = self.solver.begins_block(target);
+        let all = self.solver.begins_block(target) || problem.spring.moves_as_one;
         let near = |i: &usize| {
             let trace = &self.predictor.traces[*i];
             all || !trace.is_known()

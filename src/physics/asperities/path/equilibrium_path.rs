@@ -146,7 +146,7 @@ impl EquilibriumPath {
     /// Gathers the neighbourhood of a transition at a mean penetration \[m\] or where its contacts were known
     /// last.
     pub(super) fn gather(&mut self, transition: &Transition, mean_penetration: Option<f64>) {
-        let interval = self.numerics().solver.free_interval * self.solver.problem.rms_height_m;
+        let interval = self.numerics().solver.free_interval * self.solver.problem.unit_m;
         let within = Surroundings {
             problem: &self.solver.problem,
             predictor: &self.predictor,
@@ -219,8 +219,8 @@ impl EquilibriumPath {
     /// Precision at the end of an increment: exact on a grid, where most states are written down, and at a
     /// bound.
     fn precision_at(&self, target: f64, bound: Option<f64>) -> Precision {
-        let exact = bound == Some(target)
-            || is_multiple(target, self.accuracy().exact_grid * self.problem().rms_height_m);
+        let exact =
+            bound == Some(target) || is_multiple(target, self.accuracy().exact_grid * self.problem().unit_m);
         if exact { Precision::Exact } else { self.precision_between() }
     }
 

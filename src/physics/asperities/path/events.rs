@@ -11,6 +11,10 @@ use crate::asperities::solve::local::curve::{CurveEnd, CurveSearch};
 use crate::asperities::solve::local::{Hold, LocalProblem};
 use crate::math::bracket::{End, Illinois};
 
+/// Rate of a penetration from which on a limit point of all contacts is looked for: it is at most about 1
+/// elsewhere, and infinite there.
+const RATE_AT_FOLD: f64 = 1.5;
+
 /// Position of an event on the solution curve: the local problem is there.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Located {
@@ -69,7 +73,26 @@ impl EquilibriumPath {
         for &i in self.state().contacts.iter().chain(&self.predictor.candidates) {
             self.predictor.expect(&self.problem(), i, target, self.frame.sense, &mut queue);
         }
+        queue.extend(self.common_fold(target));
         queue
+    }
+
+    /// The end of the branch of the fastest contact, where a soft spring may make all contacts unstable at
+    /// once before any of them is at the end of its own branch. It is looked for along the curve of that
+    /// contact.
+    fn common_fold(&self, target: f64) -> Option<PredictedEvent> {
+        if !self.problem().spring.moves_as_one || self.frame.sense > 0.0 {
+            return None;
+        }
+        let rate = |i: usize| self.predictor.traces[i].rate;
+        let fastest = self
+            .state()
+            .contacts
+            .iter()
+            .copied()
+            .max_by(|i, j| rate(*i).total_cmp(&rate(*j)).then(j.cmp(i)))?;
+        (rate(fastest) > RATE_AT_FOLD)
+            .then(|| PredictedEvent { mean_penetration: target, transition: Transition::jump_off(fastest) })
     }
 
     /// Position of the earliest event in the queue.
@@ -103,7 +126,7 @@ impl EquilibriumPath {
         } else {
             let Some(located) = self.locate(&event, target) else { return Ok(Outcome::Absent) };
             let mean_penetration = self.neighbourhood.local.mean_penetration;
-            let tolerance = self.numerics().events.position_tolerance * self.problem().rms_height_m;
+            let tolerance = self.numerics().events.position_tolerance * self.problem().unit_m;
             if queue
                 .iter()
                 .any(|other| (mean_penetration - other.mean_penetration) * self.frame.sense > tolerance)
@@ -175,7 +198,7 @@ impl EquilibriumPath {
             local.solve(problem, Hold::Penetration(watched, bound), effort).ok()?;
         }
         let way = (local.mean_penetration - start) * sense;
-        let inside = way >= -problem.numerics.events.position_tolerance * problem.rms_height_m
+        let inside = way >= -problem.numerics.events.position_tolerance * problem.unit_m
             && (local.mean_penetration - target) * sense <= 0.0;
         inside.then_some(Located::Point)
     }
@@ -202,7 +225,7 @@ impl EquilibriumPath {
         let (limits, touch) = (&problem.numerics.events, problem.numerics.events.merging_overlap);
         for _ in 0..limits.merging_trials {
             if (0.0..=touch).contains(&now)
-                || (high - low).abs() <= limits.position_tolerance * problem.rms_height_m
+                || (high - low).abs() <= limits.position_tolerance * problem.unit_m
             {
                 break;
             }

@@ -105,7 +105,7 @@ impl Surroundings<'_> {
     fn select(&self, transition: &Transition, place: &[f64; 2]) -> Selection {
         let problem = self.problem;
         let (state, traces) = (&self.predictor.state, &self.predictor.traces);
-        let alone = problem.rules.interaction == Interaction::None;
+        let alone = problem.rules.interaction == Interaction::None && problem.field.uniform() == 0.0;
         let limits = &problem.numerics.events;
         let most = if alone { 1 } else { limits.local_contacts };
         let span = limits.jump_in_distance * self.scale;

@@ -182,6 +182,11 @@ impl Predictor {
         Totals { load_n: sums.load, area_m2: sums.area }
     }
 
+    /// `dF/dΔ` of all contacts where they were known last \[N/m\].
+    pub(crate) fn load_rate_of_all(&self) -> f64 {
+        self.sums.load_rate
+    }
+
     /// Removes a contact from the sums (−1) or adds it (+1), as predicted at a mean penetration.
     pub(crate) fn count(&mut self, problem: &Problem, i: usize, sign: f64, mean_penetration: f64) {
         let mut share = self.share(problem, i);

@@ -10,7 +10,7 @@
 use super::avalanche::Avalanche;
 use super::equilibrium_path::EquilibriumPath;
 use super::rejection::Rejection;
-use super::work::{mean_square, work, work_along};
+use super::work::{mean_square, work, work_along, work_of_all, work_of_all_along};
 use crate::asperities::contact::Status;
 use crate::asperities::contact::transition::Transition;
 use crate::asperities::solve::local::outside::ReferenceState;
@@ -323,6 +323,7 @@ impl EquilibriumPath {
         let problem = &*self.problem();
         let local = &self.neighbourhood.local;
         let mut traces = Vec::with_capacity(local.members.len());
+        let mut together = Vec::new();
         for (k, (member, a)) in local.members.iter().zip(&local.radius).enumerate() {
             let i = member.asperity;
             let (asperity, from) = (&problem.asperities[i], self.predictor.traces[i]);
@@ -331,11 +332,36 @@ impl EquilibriumPath {
                 None => PenetrationTrace::new(local.mean_penetration, asperity.penetration(*a), from.rate),
             };
             let along_curve = from.at == self.neighbourhood.reference && curve.len() > 1;
-            self.log.work_j +=
-                if along_curve { work_along(problem, i, k, curve) } else { work(problem, i, from, trace) };
+            if problem.spring.moves_as_one {
+                together.push((i, from, trace));
+            } else {
+                self.log.work_j += if along_curve {
+                    work_along(problem, i, k, curve)
+                } else {
+                    work(problem, i, from, trace)
+                };
+            }
             traces.push((i, *a, trace));
         }
+        self.log.work_j += self.work_together(&together, curve);
         self.predictor.replace_all(problem, &traces);
+    }
+
+    /// Work of all contacts, which a soft spring moves together \[J\]: along a solution curve if there is
+    /// one.
+    fn work_together(
+        &self,
+        together: &[(usize, PenetrationTrace, PenetrationTrace)],
+        curve: &[CurveState],
+    ) -> f64 {
+        let reference = self.neighbourhood.reference;
+        let is_along = curve.len() > 1 && together.iter().all(|(_, from, _)| from.at == reference);
+        if is_along {
+            let members: Vec<usize> = together.iter().map(|(i, ..)| *i).collect();
+            work_of_all_along(&self.problem(), &members, curve)
+        } else {
+            work_of_all(&self.problem(), together)
+        }
     }
 
     /// Records the transitions of one relaxation; its energy is that of the first.

@@ -22,7 +22,7 @@ impl EquilibriumPath {
         let mut predictor = Predictor::new(&problem, from.state);
         predictor.parted = parted;
         predictor.expect_totals(from.totals);
-        let steps = StepControl::new(problem.numerics.steps, from.sense, longest, from.halvings);
+        let steps = StepControl::new(problem.increments(), from.sense, longest, from.halvings);
         let mut path = Self::new(problem, predictor, Frame { sense: from.sense, scale }, steps);
         path.solver.effort = from.effort;
         path.energy = EnergyLedger::new(mean_penetration, from.events, from.balance);

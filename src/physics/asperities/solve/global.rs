@@ -88,6 +88,10 @@ impl GlobalSolver {
         problem.spots(state, &mut self.spots);
         let field = problem.field.for_spots(&self.spots, self.precision.of_sums());
         field.linearise(&self.spots, &mut state.displacement, &mut self.tangents.contacts, &mut self.effort);
+        if problem.field.uniform() != 0.0 {
+            let by_spring = problem.field.by_spring(&self.spots);
+            state.displacement.iter_mut().for_each(|w| *w += by_spring);
+        }
         self.residual.clear();
         self.diagonal.clear();
         let mut worst = NotConverged::residual(0.0, state.contacts.first().copied().unwrap_or(0));
@@ -114,23 +118,36 @@ impl GlobalSolver {
         let Self { problem, tangents, inverse, diagonal, residual, .. } = self;
         let jacobian = Jacobian { tangent: &tangents.contacts, diagonal };
         let inverse = inverse.of(problem, state, &tangents.contacts, diagonal);
-        let found = gmres(
-            &jacobian,
-            inverse,
-            residual,
-            Limits { tolerance: wanted, products: problem.numerics.solver.products },
-        );
-        self.count(found)
+        let limits = Limits { tolerance: wanted, products: problem.numerics.solver.products };
+        let found = gmres(&jacobian, inverse, residual, limits);
+        let uniform = (problem.field.uniform() != 0.0)
+            .then(|| gmres(&jacobian, inverse, &vec![1.0; residual.len()], limits));
+        let step = self.count(found);
+        self.on_spring(step, uniform)
+    }
+
+    /// Step `x = J⁻¹r` with the spring in series, whose part of the Jacobian is `c·1⊗F'` (Sherman & Morrison,
+    /// Ann. Math. Stat. 21:124, 1950): `x − u·c(F'·x)/(1 + c F'·u)`, with `u = J⁻¹1`.
+    fn on_spring(&mut self, mut step: Vec<f64>, uniform: Option<Solution>) -> Vec<f64> {
+        let Some(uniform) = uniform.map(|found| self.count(found)) else { return step };
+        let field = &self.problem.field;
+        let share =
+            field.by_spring_along(&self.spots, &step) / (1.0 + field.by_spring_along(&self.spots, &uniform));
+        step.iter_mut().zip(&uniform).for_each(|(s, u)| *s -= share * u);
+        step
     }
 
     /// Step of an implicit relaxation over a pseudo-time.
     pub(super) fn relaxation_step(&mut self, time: f64) -> Vec<f64> {
-        let Self { tangents, diagonal, residual, .. } = &*self;
+        let Self { problem, tangents, diagonal, residual, .. } = &*self;
         let damped: Vec<f64> = diagonal.iter().map(|d| d + 1.0 / time).collect();
-        let limits = Limits { tolerance: 1e-3, products: self.problem.numerics.solver.products };
-        let step =
-            gmres(&Jacobian { tangent: &tangents.contacts, diagonal: &damped }, None, residual, limits);
-        self.count(step)
+        let limits = Limits { tolerance: 1e-3, products: problem.numerics.solver.products };
+        let jacobian = Jacobian { tangent: &tangents.contacts, diagonal: &damped };
+        let found = gmres(&jacobian, None, residual, limits);
+        let uniform = (problem.field.uniform() != 0.0)
+            .then(|| gmres(&jacobian, None, &vec![1.0; residual.len()], limits));
+        let step = self.count(found);
+        self.on_spring(step, uniform)
     }
 
     /// `da_i/dΔ` at the equilibrium that was evaluated last; at a precision. The
@@ -149,13 +166,21 @@ impl GlobalSolver {
         let limits = Limits { tolerance, products: accuracy.products };
         let (rates, least) = gmres_and_least(&jacobian, inverse, &ones, limits);
         state.stability = least;
-        self.count(rates)
+        let mut rates = self.count(rates);
+        let field = &self.problem.field;
+        if field.uniform() != 0.0 {
+            // `dD/dΔ = 1 + c dF/dΔ` changes its sign where the spring makes the contact unstable.
+            let stiffness = 1.0 + field.by_spring_along(&self.spots, &rates);
+            state.stability = least.min(stiffness);
+            rates.iter_mut().for_each(|rate| *rate /= stiffness);
+        }
+        rates
     }
 
     /// True if all free asperities are to be evaluated at a mean penetration \[m\]: the first in each
     /// interval of the numerics.
     pub(crate) fn begins_block(&mut self, mean_penetration: f64) -> bool {
-        let interval = self.problem.numerics.solver.free_interval * self.problem.rms_height_m;
+        let interval = self.problem.numerics.solver.free_interval * self.problem.unit_m;
         let block = |at: f64| (at / interval).floor();
         let begins = self.swept_at.is_none_or(|at| block(mean_penetration) != block(at));
         self.swept_at = if begins { Some(mean_penetration) } else { self.swept_at };
@@ -176,6 +201,12 @@ impl GlobalSolver {
         let field = problem.field.for_targets(&self.spots, wanted, self.precision.of_sums());
         field.along_path(&self.spots, rates, wanted, found, &mut self.tangents.free, &mut self.effort);
         let at = state.mean_penetration_m;
+        if problem.field.uniform() != 0.0 {
+            let by_spring = problem.field.by_spring(&self.spots);
+            let along = problem.field.by_spring_along(&self.spots, rates);
+            displacement.iter_mut().for_each(|w| *w += by_spring);
+            slopes.iter_mut().for_each(|slope| *slope += along);
+        }
         let pairs = displacement.iter().zip(&slopes).zip(wanted);
         pairs
             .map(|((w, slope), &i)| PenetrationTrace::new(at, at + problem.heights[i] - w, 1.0 - slope))

@@ -71,10 +71,12 @@ impl LocalProblem {
             // It moves away from the bound.
             return Ok(CurveEnd::Beyond);
         }
+        // The work of a soft spring needs the load of all contacts between two points of the curve.
+        let most = if problem.spring.moves_as_one { 0.05 } else { 0.2 };
         // Near a fold the radius changes twice as fast as its rate predicts.
         let left = (target - self.mean_penetration).abs();
         let mut stride =
-            (2.0 * left / before.slope.abs()).clamp(1e-4 * self.radius[at], 0.2 * self.radius[at]);
+            (2.0 * left / before.slope.abs()).clamp(1e-4 * self.radius[at], most * self.radius[at]);
         let beyond = loop {
             let left = (bound - before.at).abs();
             let next = if left <= stride { bound } else { before.at + sense * stride };
@@ -92,7 +94,7 @@ impl LocalProblem {
                         return Ok(CurveEnd::Bound);
                     }
                     before = point;
-                    stride = (2.0 * stride).min(0.2 * self.radius[at]);
+                    stride = (2.0 * stride).min(most * self.radius[at]);
                 }
                 Err(unsettled) => {
                     stride *= 0.25;
@@ -119,7 +121,7 @@ impl LocalProblem {
         mut beyond: CurveState,
         effort: &mut Effort,
     ) -> Result<(), NotConverged> {
-        let tolerance = 1e-9 * problem.rms_height_m;
+        let tolerance = 1e-9 * problem.unit_m;
         let mut ends = Illinois::new(before.slope, beyond.slope);
         for _ in 0..60 {
             let span = beyond.at - before.at;

@@ -167,7 +167,7 @@ impl LocalProblem {
     pub(crate) fn tolerance_m(&self, problem: &Problem) -> f64 {
         match self.extent {
             Extent::Whole => problem.tolerance_m(),
-            Extent::Part => problem.numerics.solver.local_residual * problem.rms_height_m,
+            Extent::Part => problem.numerics.solver.local_residual * problem.unit_m,
         }
     }
 
