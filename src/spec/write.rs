@@ -2,7 +2,7 @@
 
 use std::fmt::{Error, Write as _};
 
-use super::keys::{GENERATED, KEYS, Key, MEASURED, TABLES};
+use super::keys::{GENERATED, KEYS, Key, MEASURED, REPLACED, TABLES, WHERE_USED};
 use super::values::Values;
 use super::{Case, Spec, Value};
 use crate::model::{Choice as _, Method};
@@ -54,8 +54,12 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
 
 /// True if the base's kind of surface reads a key, or it says something other than its default.
 fn is_read(key: &Key, base: &Values) -> bool {
-    let others: &[&str] = if base.measured.file.is_empty() { &MEASURED } else { &GENERATED };
-    key.table != "surface" || !others.contains(&key.name) || (key.get)(base) != (key.get)(&Values::default())
+    let is_generated = base.measured.file.is_empty();
+    let is_left_out = if is_generated { MEASURED.contains(&key.name) } else { GENERATED.contains(&key.name) };
+    let is_replaced = is_generated && base.generated.is_tabulated() && REPLACED.contains(&key.name);
+    key.table != "surface"
+        || !(is_left_out || is_replaced || WHERE_USED.contains(&key.name))
+        || (key.get)(base) != (key.get)(&Values::default())
 }
 
 /// True if a value was left to its default, which differs between the cases of a sweep that does not set it:

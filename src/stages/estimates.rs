@@ -18,9 +18,9 @@ use crate::store::{Frame, FrameError, parquet};
 use ndarray::ArrayView2;
 use std::path::Path;
 
-/// Target spectrum of a case; a measured surface has none.
+/// Target spectrum of a case; a measured surface has none, nor has a table whose file is missing.
 pub(super) fn target(params: &CaseParams) -> Option<Spectrum> {
-    params.surface.generated().map(GeneratedSurface::spectrum)
+    params.surface.generated().filter(|surface| surface.has_spectrum()).map(GeneratedSurface::spectrum)
 }
 
 /// True for a number that a table may hold.

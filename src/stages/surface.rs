@@ -20,13 +20,17 @@ pub(super) struct Scale {
     pub(super) rms_height_m: f64,
 }
 
-/// Scale of a surface; that of a measured one is read from its file.
+/// Scale of a surface; that of a measured one, and of a table whose file is missing, is read from its file.
 pub(super) fn scale(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Scale, StageError> {
-    if let SurfaceSource::Generated(GeneratedSurface { length_m, rms_height_m, .. }) = unit.params {
+    if let SurfaceSource::Generated(surface) = &unit.params
+        && surface.has_spectrum()
+    {
+        let GeneratedSurface { length_m, rms_height_m, .. } = *surface;
         return Ok(Scale { length_m, rms_height_m });
     }
-    let SurfaceHeader { length_m, rms_height_m, .. } = read_header(&campaign.surface_path(unit))?;
-    Ok(Scale { length_m, rms_height_m })
+    let SurfaceHeader { length_m, rms_height_m, generated, .. } = read_header(&campaign.surface_path(unit))?;
+    let target = generated.map(|of| of.target_rms_height_m);
+    Ok(Scale { length_m, rms_height_m: target.unwrap_or(rms_height_m) })
 }
 
 /// A stage with one task for each surface.

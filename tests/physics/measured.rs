@@ -7,6 +7,7 @@ use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
 use hysteron::physics::surface::periodogram::{Estimate, periodogram, windowed_periodogram};
 use hysteron::physics::surface::self_affine::fit_self_affine;
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::summits::find_summits;
 use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
@@ -29,6 +30,7 @@ fn generated(magnification: u32, hurst: f64, realization: u64) -> Surface {
         magnification,
         normalization: Normalization::Spectrum,
         amplitudes: Amplitudes::Fixed,
+        shape: Shape::default(),
     };
     synthesize(&spectrum, &realization_seed(11, realization), 8 * magnification as usize)
 }
