@@ -224,6 +224,17 @@ impl CaseParams {
         self.asperities().map_or(Boundary::Periodic, |options| options.boundary)
     }
 
+    /// Elastic energy of the wavelengths of a tabulated spectrum below the shortest one, over the work of
+    /// adhesion. Nothing without a table that has been read, and without adhesion.
+    #[must_use]
+    pub fn left_out_ratio(&self) -> Option<f64> {
+        let surface = self.surface.generated()?;
+        surface.tabulated.table.as_ref()?;
+        let adhesion = self.material.work_of_adhesion_j_m2;
+        (adhesion > 0.0)
+            .then(|| surface.spectrum().left_out_m() * self.material.contact_modulus_pa / adhesion)
+    }
+
     /// Uncorrected equations, in the form that the physics uses.
     #[must_use]
     pub fn slips(&self) -> Slips {

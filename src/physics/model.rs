@@ -110,7 +110,7 @@ choice! {
         Isotropic = "isotropic",
         /// Spectrum C1(q) of profiles, in m³; converted by Abel's inversion, for an isotropic surface.
         Profile = "profile",
-        /// q C(q)/π in m³, C of the surface. For the spectrum of profiles it approximates the inversion.
+        /// In m³ as C1(q), with the approximation C1 = q C/π (`two_pi`), which contact.engineering exports for maps.
         QOverPi = "q_over_pi",
     }
 }
@@ -123,7 +123,7 @@ choice! {
         Plain = "plain",
         /// `∫ C d²q/(2π)² = h_rms²` (contact.engineering); of profiles `∫ C1 dq/(2π) = h_rms²` over both signs.
         TwoPi = "two_pi",
-        /// Profiles alone: `∫ C1 dq/(2π) = h_rms²` over positive q.
+        /// C1 alone: `∫ C1 dq/(2π) = h_rms²` over positive q.
         OneSided = "one_sided",
     }
 }

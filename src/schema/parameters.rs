@@ -6,7 +6,7 @@ use super::{Column, real, text};
 use crate::model::{Choice, GeneratedSurface};
 
 /// Number of parameters.
-const COUNT: usize = 37;
+const COUNT: usize = 38;
 
 /// Parameters that define a case, in the order of their columns.
 pub static PARAMETERS: [Parameter; COUNT] = LIST;
@@ -436,5 +436,18 @@ const LIST: [Parameter; COUNT] = [
             let surface = case.params.surface.generated()?;
             (surface.aspect_ratio > 1.0).then_some(Number(surface.angle_deg))
         },
+    ),
+    parameter(
+        real(
+            "left_out_ratio",
+            "1",
+            "U_el/Δγ of the wavelengths of a tabulated spectrum below the shortest one: up to 0.05, cycles have \
+             the work of adhesion Δγ - U_el; null without a table or adhesion",
+        )
+        .or_null()
+        .from("Persson and Tosatti 2001"),
+        ["U_<", "U_{el}/Δγ below the shortest wavelength"],
+        36,
+        |case| case.params.left_out_ratio().map(Number),
     ),
 ];

@@ -8,11 +8,10 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::number::short;
 use crate::formats::Refusal;
 use crate::lengths::metres;
 use crate::model::{Choice as _, GeneratedSurface, SpectrumConvention, SpectrumKind, TabulatedSpectrum};
-use crate::physics::surface::psd_table::{MAX_GAP, PsdTable};
+use crate::physics::surface::psd_table::{MAX_GAP, PsdTable, RowFault};
 
 /// Largest file of a spectrum \[bytes\].
 const MAX_BYTES: u64 = 64 << 20;
@@ -65,14 +64,14 @@ pub(super) fn uncovered(surface: &GeneratedSurface) -> Option<Refusal> {
     let covers = first <= low * (1.0 + ENDS) && last >= high * (1.0 - ENDS);
     (!covers).then(|| Refusal {
         problem: format!(
-            "it covers wavelengths from {} to {} m, and the roughness has those from {} to {} m",
-            short(2.0 * PI / last),
-            short(2.0 * PI / first),
-            short(2.0 * PI / high),
-            short(2.0 * PI / low)
+            "it covers wavelengths from {:.3e} to {:.3e} m, and the roughness has those from {:.3e} to {:.3e} m",
+            2.0 * PI / last,
+            2.0 * PI / first,
+            2.0 * PI / high,
+            2.0 * PI / low
         ),
         help: "choose length_m, longest_wavelength_m and magnification within the table: the shortest \
-               wavelength is length_m/magnification, times 1/√r to √r for an aspect ratio r"
+               wavelength is length_m/magnification; an aspect ratio r needs √r more at both ends"
             .to_owned(),
     })
 }
@@ -229,25 +228,28 @@ impl Columns {
         };
         let Some(factor) = factor(kind, convention) else {
             return refused(
-                "surface.spectrum_convention = \"one_sided\" is of profiles, and this is no profile"
-                    .to_owned(),
+                "surface.spectrum_convention = \"one_sided\" is of C1 in m^3".to_owned(),
                 "write \"plain\" or \"two_pi\"",
             );
         };
+        let at_line = |fault: RowFault| {
+            let at = rows.lines.get(fault.row).map_or_else(String::new, |line| format!("line {line}: "));
+            Refusal { problem: format!("{at}{}", fault.problem), help: help_for(kind) }
+        };
+        // Faults are those of the numbers as written.
+        PsdTable::of(&rows.values).map_err(at_line)?;
         let in_si = rows.values.iter().map(|[q, c]| {
             let q = scale_q * q;
-            [q, factor * scale_c * c / if kind == SpectrumKind::QOverPi { q } else { 1.0 }]
+            // The two-sided C1 with ∫ C1 dq = h_rms² is 2 q C if it is q C/π in the convention of 2π.
+            [q, factor * scale_c * c / if kind == SpectrumKind::QOverPi { 2.0 * q } else { 1.0 }]
         });
         let in_si: Vec<[f64; 2]> = in_si.collect();
         let table =
             if kind == SpectrumKind::Profile { PsdTable::of_profile(&in_si) } else { PsdTable::of(&in_si) };
-        let table = table.map_err(|fault| {
-            let at = rows.lines.get(fault.row).map_or_else(String::new, |line| format!("line {line}: "));
-            Refusal { problem: format!("{at}{}", fault.problem), help: help_for(kind) }
-        })?;
+        let table = table.map_err(at_line)?;
         let converted = match kind {
             SpectrumKind::Profile => ", by Abel's inversion",
-            SpectrumKind::QOverPi => ", C = π X/q",
+            SpectrumKind::QOverPi => ", C1 = q C/π",
             _ => "",
         };
         let reading = format!("{}, {}{converted}", kind.word(), convention.word());
@@ -351,19 +353,17 @@ fn kind_of(given: SpectrumKind, power: i32, series: Option<&str>) -> Result<Spec
     Ok(if given == SpectrumKind::Auto { of_series.unwrap_or(of_unit) } else { given })
 }
 
-/// Factor from C of the table to C with `∫ C d²q = h_rms²`, or to a two-sided profile with `∫ C1 dq = h_rms²`;
-/// for `q_over_pi`, to q C.
+/// Factor from C of the table to C with `∫ C d²q = h_rms²`, or to a two-sided C1 with `∫ C1 dq = h_rms²`.
 fn factor(kind: SpectrumKind, convention: SpectrumConvention) -> Option<f64> {
-    let is_profile = kind == SpectrumKind::Profile;
-    let of_convention = match convention {
+    let is_profile = kind != SpectrumKind::Isotropic;
+    Some(match convention {
         SpectrumConvention::TwoPi if is_profile => 1.0 / (2.0 * PI),
         SpectrumConvention::TwoPi => 1.0 / (4.0 * PI * PI),
         // Half of the mean square height is at negative q.
         SpectrumConvention::OneSided if is_profile => 1.0 / (4.0 * PI),
         SpectrumConvention::OneSided => return None,
         SpectrumConvention::Plain | SpectrumConvention::Auto => 1.0,
-    };
-    Some(of_convention * if kind == SpectrumKind::QOverPi { PI } else { 1.0 })
+    })
 }
 
 fn help_for(kind: SpectrumKind) -> String {

@@ -118,7 +118,7 @@ fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErr
             roll_off_m: params.roll_off_m,
             aspect_ratio: params.aspect_ratio,
             angle_deg: params.angle_deg,
-            is_tabulated: params.is_tabulated(),
+            left_out_m: params.is_tabulated().then(|| spectrum.left_out_m()),
         }),
         measured: None,
     };

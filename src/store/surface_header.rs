@@ -188,8 +188,9 @@ pub struct Generated {
     pub aspect_ratio: f64,
     /// Direction of the lay \[°\].
     pub angle_deg: f64,
-    /// True if its spectrum is a table: the Hurst exponent has no meaning then.
-    pub is_tabulated: bool,
+    /// Flattening `U_el/E*` of the wavelengths of a tabulated spectrum below the shortest one \[m\]; nothing for
+    /// a power law. The Hurst exponent has no meaning for a table.
+    pub left_out_m: Option<f64>,
 }
 
 /// Writes a header as attributes of the root.
@@ -233,8 +234,8 @@ fn write_shape(file: &File, generated: &Generated) -> Result<(), Cause> {
         write_finite(file, "aspect_ratio", generated.aspect_ratio)?;
         write_finite(file, "angle_deg", generated.angle_deg)?;
     }
-    if generated.is_tabulated {
-        write_number(file, "tabulated", 1_u8)?;
+    if let Some(left_out_m) = generated.left_out_m {
+        write_finite(file, "tabulated_left_out_m", left_out_m)?;
     }
     Ok(())
 }
@@ -353,7 +354,7 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
             roll_off_m: of_shape("roll_off_m")?,
             aspect_ratio: of_shape("aspect_ratio")?.unwrap_or(1.0),
             angle_deg: of_shape("angle_deg")?.unwrap_or(0.0),
-            is_tabulated: has("tabulated"),
+            left_out_m: of_shape("tabulated_left_out_m")?,
         })
     } else {
         None

@@ -277,6 +277,41 @@ fn val_the_window_shows_the_spectrum_of_a_part_of_a_surface() {
     assert!(far(&bare) > 1.5 * far(&windowed), "{} {}", far(&bare), far(&windowed));
 }
 
+/// Finding of a user: with an S-filter cut-off below the shortest wavelength of the surface, a fit across the end of
+/// the spectrum gave H = 17.8.
+#[test]
+fn reg_the_fit_ends_where_the_spectrum_ends() {
+    for (hurst, roll_off, periodic) in [(0.3, 4.0, true), (0.8, 8.0, true), (0.8, 8.0, false), (0.5, 4.0, false)] {
+        let shape = Shape { roll_off_m: Some(1e-3 / roll_off), ..Shape::default() };
+        let spectrum = Spectrum {
+            length_m: 1e-3,
+            rms_height_m: 5e-6,
+            hurst,
+            magnification: 32,
+            normalization: Normalization::Sample,
+            amplitudes: Amplitudes::Fixed,
+            shape,
+        };
+        // Sixteen points per shortest wavelength, and cut-offs of 4, 8 and 16 points.
+        let heights = synthesize(&spectrum, &realization_seed(11, 0), 512).heights_m;
+        for points in [4.0, 8.0, 16.0] {
+            let treatment = Treatment {
+                periodic,
+                detrend: if periodic { Detrend::Mean } else { Detrend::Plane },
+                points_per_shortest_wavelength: points,
+                ..PLAIN
+            };
+            let fit = prepare(heights.clone(), [1e-3 / 512.0; 2], &treatment).unwrap().fit.unwrap();
+            // Three octaves of power law or fewer: the roll-off and H are known to a tenth.
+            assert!((fit.hurst - hurst).abs() < 0.1, "{points}: {fit:?}");
+            assert!(fit.rolls_off, "{points}: {fit:?}");
+            assert!((fit.roll_off_1_m / (roll_off * TAU / 1e-3)).ln().abs() < 0.1, "{points}: {fit:?}");
+            let end = fit.short_cut.unwrap().wavenumber_1_m;
+            assert!((end / (32.0 * TAU / 1e-3)).ln().abs() < 0.1, "{points}: {fit:?}");
+        }
+    }
+}
+
 #[test]
 fn val_the_fit_finds_the_spectrum_that_a_surface_was_made_from() {
     for (hurst, realization) in [(0.5, 0), (0.8, 1)] {

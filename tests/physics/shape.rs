@@ -59,10 +59,21 @@ fn val_moments_of_a_roll_off_are_its_closed_forms() {
     close("part", spectrum.integral(0.0, 0.0, qr), plateau * TAU * power(1.0, ql, qr), 1e-12);
 }
 
-/// SurfaceTopography 1.27.1, by hand:
-/// `m = SelfAffineModel(cr=C, shortcut_wavelength=L/32, rolloff_wavelength=L/4, hurst_exponent=0.8)`
-/// with `L = 2e-5`, its `C = 4 pi^2 C0` for the plateau C0 of 40 nm from L; the model has no longest wavelength, so
-/// the part of the plateau below 2π/L is taken off.
+/// SurfaceTopography 1.27.1, by hand, with `L = 2e-5`:
+/// `m = Models.SelfAffine.SelfAffine(cr=1e-29, rolloff_wavelength=L/4, hurst_exponent=0.8, longcut_wavelength=L,`
+/// `shortcut_wavelength=L/32)`, then `m.rms_height()`, `sqrt` of `m.variance_derivative(1)` and `(2)`, and
+/// `m.variance_derivative(0.5)`, of which E*/4 is the energy of flattening.
+#[test]
+fn val_moments_of_a_roll_off_are_those_of_surface_topography() {
+    let spectrum = Spectrum { rms_height_m: 1.6408860329853951e-9, ..rough(rolled(LENGTH / 4.0)) };
+    let moments = spectrum.moments();
+    // Its C is 4π² times ours.
+    close("plateau", spectrum.density(1), 1e-29 / (4.0 * PI * PI), 1e-12);
+    close("slope", moments.rms_slope(), 0.003723050671495667, 1e-12);
+    close("Laplacian", moments.rms_curvature_1_m(), 19554.82571912983, 1e-12);
+    close("energy", flattening(&spectrum, 4.0).whole_j_m2, 4.788471030694994e-12, 1e-12);
+}
+
 #[test]
 fn val_a_long_cut_off_begins_at_its_wavelength() {
     let shape = Shape { longest_wavelength_m: Some(LENGTH / 4.0), ..Shape::default() };
@@ -211,6 +222,11 @@ fn val_a_table_of_a_roll_off_is_the_roll_off() {
     assert_eq!(known.density_m4(33.0 * ql), 0.0, "zero beyond it");
     close("at the last row", known.density_m4(32.0 * ql), rows[5][1], 1e-12);
     assert_eq!(known.rows().count(), 6);
+    // A band that ends at 16: the rest of the table is left out.
+    let part = Spectrum { magnification: 16, ..table.clone() };
+    let whole = |of: &Spectrum| flattening(of, 1.0).whole_j_m2;
+    close("left out", part.left_out_m(), whole(&table) - whole(&part), 1e-12);
+    assert_eq!(spectrum.left_out_m(), 0.0, "a power law ends at its shortest wavelength");
 }
 
 #[test]
@@ -296,7 +312,7 @@ fn law_a_bad_table_is_refused_at_its_row() {
         (with(2, [2e6 * MAX_GAP * 1.001, 1e-32]), 2, "gap"),
         (PsdTable::of(&good[..1]).unwrap_err(), 1, "at least two"),
         (PsdTable::of_profile(&[[1e6, 1e-20], [2e6, 2e-20]]).unwrap_err(), 1, "does not decrease"),
-        (PsdTable::of_profile(&[[1e6, 1e-24], [2e6, 9e-20], [4e6, 8e-20]]).unwrap_err(), 0, "grows"),
+        (PsdTable::of_profile(&[[1e6, 1e-24], [2e6, 9e-20], [4e6, 8e-20]]).unwrap_err(), 0, "not positive"),
     ];
     for (fault, row, word) in cases {
         assert_eq!(fault.row, row, "{fault:?}");

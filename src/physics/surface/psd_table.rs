@@ -71,9 +71,8 @@ impl PsdTable {
             if density > 0.0 {
                 return Ok([*q, density]);
             }
-            let problem = format!(
-                "the conversion of the profile to an isotropic spectrum gives {density:e} m4: C1 grows with q"
-            );
+            let problem =
+                format!("Abel's inversion of the profile gives C = {density:.3e} m4, which is not positive");
             Err(RowFault { row, problem })
         };
         let inverted: Vec<[f64; 2]> = rows.iter().enumerate().map(inverted).collect::<Result<_, _>>()?;
@@ -125,7 +124,7 @@ fn check(rows: &[[f64; 2]]) -> Result<(), RowFault> {
     for (row, values) in rows.iter().enumerate() {
         for (name, value) in ["q", "C"].into_iter().zip(values) {
             if !(*value > 0.0 && value.is_finite()) {
-                return fault(row, format!("{name} is {value}: it must be positive and finite"));
+                return fault(row, format!("{name} is {value:e}: it must be positive and finite"));
             }
         }
         let Some(before) = row.checked_sub(1).map(|before| rows[before][0]) else { continue };

@@ -83,6 +83,18 @@ impl Spectrum {
         self.prefactor() * self.shape.integral(&pieces, p, [low.max(longest), high.min(shortest)])
     }
 
+    /// Flattening of the wavelengths of a table below the shortest one, `¼ ∫ q C(q) d²q` over `|q| ≥ q1` \[m\].
+    ///
+    /// Times E* it is their elastic energy per area. A power law has no wavelengths below its shortest: 0.
+    #[must_use]
+    pub fn left_out_m(&self) -> f64 {
+        if self.shape.table.is_none() {
+            return 0.0;
+        }
+        let pieces = self.shape.pieces(self.hurst, self.lowest_wavenumber());
+        0.25 * self.shape.integral(&pieces, 1.0, [self.band_1_m()[1], f64::INFINITY])
+    }
+
     /// Moments of the continuous spectrum: `m0 = 2π∫qC dq`, `m2 = π∫q³C dq`, `m4 = (3π/4)∫q⁵C dq`.
     ///
     /// Those of an anisotropic spectrum have the same rms height, gradient and Laplacian:
