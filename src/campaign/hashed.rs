@@ -88,7 +88,8 @@ fn case_key(spec: &Spec, params: &CaseParams) -> String {
     Canonical::of(&of_whole_case(spec, params)).case_key()
 }
 
-/// The readable part of ids: of a measured surface and of a tabulated spectrum the name of the file, without its
+/// The readable part of ids: of a measured surface and of a tabulated spectrum the name of the file,
+/// without its
 /// folder and its ending.
 fn readable(params: &SurfaceSource) -> String {
     let (file, end) = match params {

@@ -41,7 +41,8 @@ pub(super) fn labels(spec: &Spec) -> BTreeMap<String, String> {
 }
 
 impl Campaign {
-    /// Label in tables of the file of a measured surface or of a tabulated spectrum; other surfaces have none.
+    /// Label in tables of the file of a measured surface or of a tabulated spectrum; other surfaces have
+    /// none.
     #[must_use]
     pub fn label_of(&self, surface: &SurfaceSource) -> Option<String> {
         surface.file().map(|file| self.file_label(file))

@@ -441,8 +441,8 @@ const LIST: [Parameter; COUNT] = [
         real(
             "left_out_ratio",
             "1",
-            "U_el/Δγ of the wavelengths of a tabulated spectrum below the shortest one: up to 0.05, cycles have \
-             the work of adhesion Δγ - U_el; null without a table or adhesion",
+            "U_el/Δγ of the wavelengths of a tabulated spectrum below the shortest one: up to 0.05, cycles \
+             have the work of adhesion Δγ - U_el; null without a table or adhesion",
         )
         .or_null()
         .from("Persson and Tosatti 2001"),

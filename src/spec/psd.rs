@@ -64,7 +64,7 @@ pub(super) fn uncovered(surface: &GeneratedSurface) -> Option<Refusal> {
     let covers = first <= low * (1.0 + ENDS) && last >= high * (1.0 - ENDS);
     (!covers).then(|| Refusal {
         problem: format!(
-            "it covers wavelengths from {:.3e} to {:.3e} m, and the roughness has those from {:.3e} to {:.3e} m",
+            "it covers wavelengths from {:.3e} to {:.3e} m, and the roughness has {:.3e} to {:.3e} m",
             2.0 * PI / last,
             2.0 * PI / first,
             2.0 * PI / high,

@@ -34,8 +34,8 @@ impl SurfaceStage for Generate {
     }
 }
 
-const OTHER_FILE: &str = "the file differs from its checksum in [files] of the spec\nhelp: remove this line to \
-                          recompute with the present file";
+const OTHER_FILE: &str = "the file differs from its checksum in [files] of the spec\nhelp: remove this line \
+                          to recompute with the present file";
 
 /// Imports a measured surface.
 fn import(campaign: &Campaign, unit: &SurfaceUnit, surface: &MeasuredSurface) -> Result<Outcome, StageError> {

@@ -110,7 +110,8 @@ pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError
     });
     // The first row with the method of each row.
     let same_method: Vec<usize> = places.collect();
-    // The size and roughness of a measured surface follow from its file and are not named; nor are those of a table.
+    // The size and roughness of a measured surface follow from its file and are not named; nor are those of
+    // a table.
     let tables = cases.text_or_null("spectrum_file")?;
     let tabulated = rows.iter().any(|row| tables.get(*row).is_some_and(Option::is_some));
     let follows = |name: &str| {

@@ -188,7 +188,8 @@ pub struct Generated {
     pub aspect_ratio: f64,
     /// Direction of the lay \[°\].
     pub angle_deg: f64,
-    /// Flattening `U_el/E*` of the wavelengths of a tabulated spectrum below the shortest one \[m\]; nothing for
+    /// Flattening `U_el/E*` of the wavelengths of a tabulated spectrum below the shortest one \[m\];
+    /// nothing for
     /// a power law. The Hurst exponent has no meaning for a table.
     pub left_out_m: Option<f64>,
 }

@@ -175,7 +175,8 @@ fn parameters(params: &CaseParams) -> Map<String, Value> {
     all
 }
 
-/// Removes the keys of a measured surface from those of a generated one, and the other way round. Keys that are
+/// Removes the keys of a measured surface from those of a generated one, and the other way round. Keys that
+/// are
 /// used by few surfaces remain where they are not at their default.
 fn keep_own(surface: &SurfaceSource, all: &mut Map<String, Value>) {
     let others: &[&str] = surface.generated().map_or(&GENERATED, |_| &MEASURED);

@@ -33,8 +33,8 @@ fn paragraph(surface: &GeneratedSurface, label: &str, ratios: &[f64]) -> String 
     let (moments, energy) = (spectrum.moments(), flattening(&spectrum, 1.0).whole_j_m2);
     let [longest, shortest] = spectrum.band_1_m().map(|wavenumber| significant(TAU / wavenumber, 4));
     let mut text = format!(
-        "{}: {}. Wavelengths from {shortest} to {longest} m have h_rms = {} m, h'_rms = {}, Laplacian {} 1/m, \
-         U_el = E* x {} m.",
+        "{}: {}. Wavelengths from {shortest} to {longest} m have h_rms = {} m, h'_rms = {}, Laplacian \
+         {} 1/m, U_el = E* x {} m.",
         visible(label),
         surface.tabulated.reading,
         significant(moments.rms_height_m(), 4),

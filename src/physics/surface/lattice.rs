@@ -131,7 +131,8 @@ impl Spectrum {
     ///
     /// The amplitudes are fixed, with the chosen normalisation.
     ///
-    /// They are sums in place of the integrals of [`Self::moments`]. The time is proportional to ζ for Eq 10, and
+    /// They are sums in place of the integrals of [`Self::moments`]. The time is proportional to ζ for Eq
+    /// 10, and
     /// to ζ² for other shapes.
     #[must_use]
     pub fn lattice_moments(&self) -> Moments {

@@ -83,7 +83,8 @@ impl Spectrum {
         self.prefactor() * self.shape.integral(&pieces, p, [low.max(longest), high.min(shortest)])
     }
 
-    /// Flattening of the wavelengths of a table below the shortest one, `¼ ∫ q C(q) d²q` over `|q| ≥ q1` \[m\].
+    /// Flattening of the wavelengths of a table below the shortest one, `¼ ∫ q C(q) d²q` over `|q| ≥ q1`
+    /// \[m\].
     ///
     /// Times E* it is their elastic energy per area. A power law has no wavelengths below its shortest: 0.
     #[must_use]

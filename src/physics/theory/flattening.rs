@@ -49,7 +49,8 @@ impl Flattening {
 /// Flattening energies of the continuous spectrum (Eq 10), with E* \[Pa\].
 ///
 /// `(E*/4) ∫ q C d²q = (π/2) E* C0 qL³ ∫ x^(−2H) dx` with `x = q/qL`, from 1 or from ζ/2 to ζ.
-/// At `H = 1/2` the integral is a logarithm. A spectrum with another shape has its integral over the wavevectors
+/// At `H = 1/2` the integral is a logarithm. A spectrum with another shape has its integral over the
+/// wavevectors
 /// of its band.
 #[must_use]
 pub fn flattening(spectrum: &Spectrum, contact_modulus_pa: f64) -> Flattening {
