@@ -6,5 +6,5 @@ pub use crate::physics::model::*;
 pub use crate::physics::theory::regime::{BRIDGED, FLATTENED, LARGE_AREA, Regime, SEPARATE};
 pub use case::{
     AsperityOptions, Attraction, CaseParams, ElementOptions, GeneratedSurface, LoadingPath, MeasuredSurface,
-    MethodOptions, SurfaceSource,
+    MethodOptions, SurfaceSource, TabulatedSpectrum,
 };

@@ -88,17 +88,22 @@ fn case_key(spec: &Spec, params: &CaseParams) -> String {
     Canonical::of(&of_whole_case(spec, params)).case_key()
 }
 
-/// The readable part of ids: of a measured surface the name of its file, without its folder and its ending.
+/// The readable part of ids: of a measured surface and of a tabulated spectrum the name of the file,
+/// without its
+/// folder and its ending.
 fn readable(params: &SurfaceSource) -> String {
-    let file = match params {
-        SurfaceSource::Generated(surface) => {
+    let (file, end) = match params {
+        SurfaceSource::Generated(surface) if !surface.is_tabulated() => {
             return format!("H{:.2}_z{}", surface.hurst, surface.magnification);
         }
-        SurfaceSource::Measured(surface) => &surface.file,
+        SurfaceSource::Generated(surface) => {
+            (&surface.tabulated.file, format!("_z{}", surface.magnification))
+        }
+        SurfaceSource::Measured(surface) => (&surface.file, String::new()),
     };
     let stem =
         Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     let name: String = stem.chars().map(plain).take(32).collect();
-    if name.is_empty() { "surface".to_owned() } else { name }
+    if name.is_empty() { format!("surface{end}") } else { format!("{name}{end}") }
 }

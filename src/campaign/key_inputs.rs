@@ -5,11 +5,11 @@
 
 use super::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit};
 use crate::keys::{canonical, key_of_text, preimage};
-use crate::model::{MeasuredSurface, MethodOptions, SurfaceSource};
+use crate::model::{GeneratedSurface, MeasuredSurface, MethodOptions, SurfaceSource, TabulatedSpectrum};
 use crate::physics::asperities::Asperities;
 use crate::physics::cycle::Method;
 use crate::physics::elements::Elements;
-use crate::spec::{Case, CaseParams, OPTIONAL_TABLES, OTHER_LOADS, Spec};
+use crate::spec::{Case, CaseParams, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, Spec};
 use serde_json::{Map, Value, json};
 
 /// Form of key inputs.
@@ -297,6 +297,7 @@ const MEASURED_VERSION: u32 = 2;
 /// measured one.
 pub(super) fn of_surface(spec: &Spec, params: &SurfaceSource) -> Value {
     let surface = match params {
+        SurfaceSource::Generated(surface) if surface.is_tabulated() => return of_tabulated(spec, surface),
         SurfaceSource::Generated(surface) => return plain(surface),
         SurfaceSource::Measured(surface) => surface,
     };
@@ -314,6 +315,21 @@ pub(super) fn of_surface(spec: &Spec, params: &SurfaceSource) -> Value {
         "header_version": MEASURED_HEADER_VERSION,
     });
     corrections(surface).into_iter().for_each(|(name, value)| reads[name] = value);
+    reads
+}
+
+/// Version of the reading and conversion of tabulated spectra in their keys.
+const TABLE_VERSION: u32 = 1;
+
+/// Inputs of a surface with a tabulated spectrum: the content of its file, and what is read with it.
+fn of_tabulated(spec: &Spec, surface: &GeneratedSurface) -> Value {
+    let TabulatedSpectrum { file, kind, convention, unit, series, .. } = &surface.tabulated;
+    let mut reads = plain(surface);
+    REPLACED.iter().for_each(|name| remove(&mut reads, name));
+    reads["spectrum"] = json!({
+        "blake3": spec.files.get(file), "kind": kind, "convention": convention, "unit": unit,
+        "series": series, "table_version": TABLE_VERSION,
+    });
     reads
 }
 

@@ -41,13 +41,14 @@ pub(super) fn labels(spec: &Spec) -> BTreeMap<String, String> {
 }
 
 impl Campaign {
-    /// Label of the file of a measured surface in tables; a generated surface has none.
+    /// Label in tables of the file of a measured surface or of a tabulated spectrum; other surfaces have
+    /// none.
     #[must_use]
     pub fn label_of(&self, surface: &SurfaceSource) -> Option<String> {
-        surface.measured().map(|surface| self.file_label(&surface.file))
+        surface.file().map(|file| self.file_label(file))
     }
 
-    /// Label of a file of a measured surface in tables.
+    /// Label of a file in tables.
     fn file_label(&self, file: &str) -> String {
         let name = || Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned();
         self.labels.get(file).cloned().unwrap_or_else(name)
@@ -56,9 +57,7 @@ impl Campaign {
     /// A message with the label of a file in place of its path: the part that begins like an absolute path
     /// and ends with the name of the file.
     pub(super) fn with_label(&self, message: &str, surface: &SurfaceSource) -> String {
-        let Some(file) = surface.measured().map(|surface| surface.file.as_str()) else {
-            return message.to_owned();
-        };
+        let Some(file) = surface.file() else { return message.to_owned() };
         let Some(name) = Path::new(file).file_name().map(|name| visible(&name.to_string_lossy())) else {
             return message.to_owned();
         };

@@ -6,17 +6,24 @@ pub(super) enum Template {
     Quickstart,
     Sweep,
     Scan,
+    Spectrum,
     Full,
 }
 
 impl Template {
     /// All templates, each with its name and its purpose.
-    pub(super) const ALL: [(Self, &'static str, &'static str); 4] = [
+    pub(super) const ALL: [(Self, &'static str, &'static str); 5] = [
         (Self::Quickstart, "quickstart", "a soft and a stiff contact, generated surfaces: runs in seconds"),
         (Self::Sweep, "sweep", "parameter sweeps around a reference case"),
         (Self::Scan, "scan", "a measured surface"),
+        (Self::Spectrum, "spectrum", "a tabulated power spectral density, with an example psd.csv"),
         (Self::Full, "full", "every key with its default"),
     ];
+
+    /// Name and text of a file that the spec names.
+    pub(super) fn example(self) -> Option<(&'static str, &'static str)> {
+        (self == Self::Spectrum).then_some(("psd.csv", include_str!("templates/psd.csv")))
+    }
 
     /// The text of the spec.
     pub(super) fn text(self) -> &'static str {
@@ -24,6 +31,7 @@ impl Template {
             Self::Quickstart => include_str!("templates/quickstart.toml"),
             Self::Sweep => include_str!("templates/sweep.toml"),
             Self::Scan => include_str!("templates/scan.toml"),
+            Self::Spectrum => include_str!("templates/spectrum.toml"),
             Self::Full => include_str!("templates/full.toml"),
         }
     }

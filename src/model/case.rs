@@ -3,10 +3,13 @@
 use super::{
     Amplitudes, AttractionKind, Boundary, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn,
     KeptContacts, Machine, Material, Method, Missing, Normalization, Nucleation, Opening, Probe, Slip, Slips,
-    Substrate,
+    SpectrumConvention, SpectrumKind, Substrate,
 };
+use crate::physics::surface::psd_table::PsdTable;
+use crate::physics::surface::shape::Shape;
 use crate::physics::surface::spectrum::Spectrum;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Everything that a case is made of but its seed. It serializes as the tables of a spec.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -56,6 +59,48 @@ pub struct GeneratedSurface {
     pub normalization: Normalization,
     /// The moduli of the Fourier modes.
     pub amplitudes: Amplitudes,
+    /// Longest wavelength \[m\], if it is below L.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub longest_wavelength_m: Option<f64>,
+    /// Roll-off wavelength λ_r \[m\] of a plateau above it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roll_off_m: Option<f64>,
+    /// Aspect ratio of the roughness, 1 if it is isotropic.
+    #[serde(skip_serializing_if = "is_one")]
+    pub aspect_ratio: f64,
+    /// Direction of the lay, from the x axis towards the y axis \[°\].
+    #[serde(skip_serializing_if = "is_zero")]
+    pub angle_deg: f64,
+    /// Tabulated spectrum; its file is empty for a power law.
+    #[serde(skip)]
+    pub tabulated: TabulatedSpectrum,
+}
+
+/// A tabulated spectrum and its reading.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TabulatedSpectrum {
+    /// Its file; empty for none.
+    pub file: String,
+    /// Quantity in its second column.
+    pub kind: SpectrumKind,
+    /// Normalization.
+    pub convention: SpectrumConvention,
+    /// Unit of length of both columns, if the heading does not state it.
+    pub unit: String,
+    /// Name of the data series of a table with several.
+    pub series: String,
+    /// Its isotropic density; nothing until the file has been read.
+    pub table: Option<Arc<PsdTable>>,
+    /// Quantity, convention and conversion in words; empty until the file has been read.
+    pub reading: String,
+}
+
+fn is_one(value: &f64) -> bool {
+    *value == 1.0
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// A measured surface and its treatment.
@@ -185,6 +230,17 @@ impl CaseParams {
         self.asperities().map_or(Boundary::Periodic, |options| options.boundary)
     }
 
+    /// Elastic energy of the wavelengths of a tabulated spectrum below the shortest one, over the work of
+    /// adhesion. Nothing without a table that has been read, and without adhesion.
+    #[must_use]
+    pub fn left_out_ratio(&self) -> Option<f64> {
+        let surface = self.surface.generated()?;
+        surface.tabulated.table.as_ref()?;
+        let adhesion = self.material.work_of_adhesion_j_m2;
+        (adhesion > 0.0)
+            .then(|| surface.spectrum().left_out_m() * self.material.contact_modulus_pa / adhesion)
+    }
+
     /// Uncorrected equations, in the form that the physics uses.
     #[must_use]
     pub fn slips(&self) -> Slips {
@@ -203,6 +259,15 @@ impl SurfaceSource {
     #[must_use]
     pub fn measured(&self) -> Option<&MeasuredSurface> {
         if let Self::Measured(surface) = self { Some(surface) } else { None }
+    }
+
+    /// File of the measured surface, or of the tabulated spectrum of a generated one.
+    #[must_use]
+    pub fn file(&self) -> Option<&str> {
+        match self {
+            Self::Measured(surface) => Some(&surface.file),
+            Self::Generated(surface) => Some(surface.tabulated.file.as_str()).filter(|file| !file.is_empty()),
+        }
     }
 
     /// True if it continues periodically.
@@ -238,7 +303,36 @@ impl GeneratedSurface {
             magnification: self.magnification,
             normalization: self.normalization,
             amplitudes: self.amplitudes,
+            shape: Shape {
+                longest_wavelength_m: self.longest_wavelength_m,
+                roll_off_m: self.roll_off_m,
+                aspect_ratio: self.aspect_ratio,
+                angle_rad: self.angle_deg.to_radians(),
+                table: self.tabulated.table.clone(),
+            },
         }
+    }
+
+    /// True if its spectrum is a table.
+    #[must_use]
+    pub fn is_tabulated(&self) -> bool {
+        !self.tabulated.file.is_empty()
+    }
+
+    /// True if its spectrum is known: a table is known once its file has been read.
+    #[must_use]
+    pub fn has_spectrum(&self) -> bool {
+        !self.is_tabulated() || self.tabulated.table.is_some()
+    }
+
+    /// The surface with the rows of its tabulated spectrum, and the rms height of the spectrum's band.
+    #[must_use]
+    pub fn with_table(&self, table: Arc<PsdTable>, reading: &str) -> Self {
+        let mut surface = self.clone();
+        surface.tabulated.table = Some(table);
+        reading.clone_into(&mut surface.tabulated.reading);
+        surface.rms_height_m = surface.spectrum().moments().rms_height_m();
+        surface
     }
 }
 
@@ -304,6 +398,25 @@ impl Default for GeneratedSurface {
             points_per_shortest_wavelength: 8,
             normalization: Normalization::Sample,
             amplitudes: Amplitudes::Fixed,
+            longest_wavelength_m: None,
+            roll_off_m: None,
+            aspect_ratio: 1.0,
+            angle_deg: 0.0,
+            tabulated: TabulatedSpectrum::default(),
+        }
+    }
+}
+
+impl Default for TabulatedSpectrum {
+    fn default() -> Self {
+        Self {
+            file: String::new(),
+            kind: SpectrumKind::Auto,
+            convention: SpectrumConvention::Auto,
+            unit: String::new(),
+            series: String::new(),
+            table: None,
+            reading: String::new(),
         }
     }
 }

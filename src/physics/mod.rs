@@ -11,13 +11,14 @@
 //! use hysteron_physics::asperities::{Asperities, Options};
 //! use hysteron_physics::cycle::Method;
 //! use hysteron_physics::model::{Amplitudes, Material, Normalization};
-//! use hysteron_physics::surface::{HeightMap, spectrum::Spectrum};
+//! use hysteron_physics::surface::{HeightMap, shape::Shape, spectrum::Spectrum};
 //! use hysteron_physics::surface::synthesis::{realization_seed, synthesize};
 //!
 //! let (normalization, amplitudes) = (Normalization::Spectrum, Amplitudes::Fixed);
 //! let (length_m, rms_height_m) = (1e-3, 5e-6);
+//! let (hurst, magnification, shape) = (0.8, 6, Shape::default());
 //! let spectrum =
-//!     Spectrum { length_m, rms_height_m, hurst: 0.8, magnification: 6, normalization, amplitudes };
+//!     Spectrum { length_m, rms_height_m, hurst, magnification, normalization, amplitudes, shape };
 //! let surface = synthesize(&spectrum, &realization_seed(1, 0), 48);
 //! let map = HeightMap {
 //!     heights_m: surface.heights_m.view(),

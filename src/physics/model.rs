@@ -172,6 +172,35 @@ choice! {
     }
 }
 choice! {
+    /// Quantity of a tabulated spectrum.
+    SpectrumKind {
+        /// By the unit of C in its heading: m⁴ is isotropic, m³ a profile. A contact.engineering table
+        /// states it.
+        Auto = "auto",
+        /// Isotropic spectrum C(q) of the surface, in m⁴.
+        Isotropic = "isotropic",
+        /// Spectrum C1(q) of profiles, in m³; converted by Abel's inversion, for an isotropic surface.
+        Profile = "profile",
+        /// In m³ as C1(q), with the approximation C1 = q C/π (`two_pi`), which contact.engineering exports
+        /// for maps.
+        QOverPi = "q_over_pi",
+    }
+}
+choice! {
+    /// Normalization of a tabulated spectrum.
+    SpectrumConvention {
+        /// A contact.engineering table has `two_pi`; of any other table it must be stated.
+        Auto = "auto",
+        /// `∫ C d²q = h_rms²`, as in this program; of profiles `∫ C1 dq = h_rms²` over q of both signs.
+        Plain = "plain",
+        /// `∫ C d²q/(2π)² = h_rms²` (contact.engineering); of profiles `∫ C1 dq/(2π) = h_rms²` over both
+        /// signs.
+        TwoPi = "two_pi",
+        /// C1 alone: `∫ C1 dq/(2π) = h_rms²` over positive q.
+        OneSided = "one_sided",
+    }
+}
+choice! {
     /// Treatment of the missing points of a measured surface.
     Missing {
         /// Missing points are an error.

@@ -1,12 +1,12 @@
 //! Parameters of a case, each stated once.
 
 use super::parameter::ParameterValue::{self, Number, Word};
-use super::parameter::{Parameter, parameter};
+use super::parameter::{CaseFacts, Parameter, parameter};
 use super::{Column, real, text};
-use crate::model::Choice;
+use crate::model::{Choice, GeneratedSurface};
 
 /// Number of parameters.
-const COUNT: usize = 37;
+const COUNT: usize = 44;
 
 /// Parameters that define a case, in the order of their columns.
 pub static PARAMETERS: [Parameter; COUNT] = LIST;
@@ -30,6 +30,11 @@ pub(super) const PARAMETER_COLUMNS: [Column; COUNT] = {
     columns
 };
 
+/// The generated surface of a power law.
+fn power_law<'a>(case: &CaseFacts<'a>) -> Option<&'a GeneratedSurface> {
+    case.params.surface.generated().filter(|surface| !surface.is_tabulated())
+}
+
 fn word(choice: impl Choice) -> ParameterValue {
     Word(choice.word().to_owned())
 }
@@ -44,7 +49,7 @@ const LIST: [Parameter; COUNT] = [
         .or_null(),
         ["surface", "surface"],
         0,
-        |case| case.surface_file.clone().map(Word),
+        |case| case.surface_file.clone().filter(|_| case.params.surface.measured().is_some()).map(Word),
     ),
     parameter(
         text("surface_dataset", "Dataset in that file; null for the only one, and for a generated surface")
@@ -137,7 +142,7 @@ const LIST: [Parameter; COUNT] = [
         real("hurst", "1", "Hurst exponent H; null for a measured surface").or_null().from("Eq 10"),
         ["H", "Hurst exponent H"],
         4,
-        |case| case.params.surface.generated().map(|surface| Number(surface.hurst)),
+        |case| power_law(case).map(|surface| Number(surface.hurst)),
     ),
     parameter(
         real(
@@ -408,5 +413,82 @@ const LIST: [Parameter; COUNT] = [
         ["ν", "Poisson's ratio ν"],
         35,
         |case| case.params.substrate.map(|layer| Number(layer.poisson_ratio)),
+    ),
+    parameter(
+        text(
+            "spectrum_file",
+            "File of a tabulated spectrum, with enough of its path to be unique; null without one",
+        )
+        .or_null(),
+        ["spectrum", "spectrum"],
+        36,
+        |case| case.surface_file.clone().filter(|_| case.params.surface.generated().is_some()).map(Word),
+    ),
+    parameter(
+        text(
+            "spectrum_reading",
+            "Quantity, convention and conversion of a tabulated spectrum to ∫ C d²q = h_rms²; null without \
+             one",
+        )
+        .or_null(),
+        ["reading", "reading of the spectrum"],
+        37,
+        |case| {
+            let surface = case.params.surface.generated()?;
+            Some(surface.tabulated.reading.clone()).filter(|reading| !reading.is_empty()).map(Word)
+        },
+    ),
+    parameter(
+        real("longest_wavelength_m", "m", "Longest wavelength of a generated surface; null for the side L")
+            .or_null(),
+        ["λ_long", "λ_{long} [m]"],
+        38,
+        |case| case.params.surface.generated()?.longest_wavelength_m.map(Number),
+    ),
+    parameter(
+        real("roll_off_m", "m", "Roll-off wavelength λ_r of a generated surface; null without one").or_null(),
+        ["λ_r", "λ_{r} [m]"],
+        39,
+        |case| case.params.surface.generated()?.roll_off_m.map(Number),
+    ),
+    parameter(
+        real(
+            "aspect_ratio",
+            "1",
+            "Aspect ratio r of a generated surface: wavelengths along the lay over those across it; null for \
+             a measured surface",
+        )
+        .or_null(),
+        ["r", "aspect ratio"],
+        40,
+        |case| case.params.surface.generated().map(|surface| Number(surface.aspect_ratio)),
+    ),
+    parameter(
+        real(
+            "angle_deg",
+            "deg",
+            "Direction of the lay of a generated surface, from the x axis towards the y axis; null for an \
+             isotropic one",
+        )
+        .or_null(),
+        ["angle", "angle of the lay [°]"],
+        41,
+        |case| {
+            let surface = case.params.surface.generated()?;
+            (surface.aspect_ratio > 1.0).then_some(Number(surface.angle_deg))
+        },
+    ),
+    parameter(
+        real(
+            "left_out_ratio",
+            "1",
+            "U_el/Δγ of the wavelengths of a tabulated spectrum below the shortest one: up to 0.05, cycles \
+             have the work of adhesion Δγ - U_el; null without a table or adhesion",
+        )
+        .or_null()
+        .from("Persson and Tosatti 2001"),
+        ["U_<", "U_{el}/Δγ below the shortest wavelength"],
+        42,
+        |case| case.params.left_out_ratio().map(Number),
     ),
 ];

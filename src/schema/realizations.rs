@@ -299,15 +299,15 @@ const RESULTS: &[Column] = &[
         "texture_aspect",
         "1",
         "Texture aspect ratio: the larger of texture_slope_ratio and 1/texture_str, \
-         the latter where the side is 20 decay lengths or more; null for a generated surface, which is \
-         isotropic",
+         the latter where the side is 20 decay lengths or more; null for a generated surface with an \
+         isotropic spectrum",
     )
     .or_null(),
     real(
         "texture_slope_ratio",
         "1",
         "Ratio of the rms slopes along the principal axes of the slope tensor, \
-         the larger over the smaller; null for a generated surface",
+         the larger over the smaller; null for a generated surface with an isotropic spectrum",
     )
     .or_null(),
     real(
@@ -315,7 +315,7 @@ const RESULTS: &[Column] = &[
         "1",
         "Texture aspect ratio Str: shortest over longest distance at which the \
          autocorrelation decays to 0.2; an upper limit where the longest exceeds half of the side; null for \
-         a generated surface",
+         a generated surface with an isotropic spectrum",
     )
     .or_null()
     .from("ISO 25178-2"),

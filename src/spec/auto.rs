@@ -98,11 +98,11 @@ const SHARPEST: f64 = 3.0;
 /// The key whose value is chosen.
 const KEY: &str = "model.method";
 
-/// The method of a generated surface by its target spectrum; `auto` for a measured one.
+/// The method of a generated surface by its target spectrum; `auto` for a measured one, and for a table that
+/// has not been read.
 fn of_target(params: &CaseParams) -> Method {
-    let Some(spectrum) = params.surface.generated().map(GeneratedSurface::spectrum) else {
-        return Method::Auto;
-    };
+    let known = params.surface.generated().filter(|surface| surface.has_spectrum());
+    let Some(spectrum) = known.map(GeneratedSurface::spectrum) else { return Method::Auto };
     let energy = flattening(&spectrum, params.material.contact_modulus_pa);
     let adhesion = params.material.work_of_adhesion_j_m2;
     let moments = spectrum.moments();
@@ -155,7 +155,9 @@ pub(super) fn chosen(
             methods.push(before.unwrap_or(*method));
             continue;
         };
-        match chooser(&unit.params) {
+        // A tabulated spectrum has been read with the spec.
+        let of_table = Some(of_target(&unit.params)).filter(|method| *method != Method::Auto);
+        match of_table.map_or_else(|| chooser(&unit.params), Ok) {
             Ok(method) => {
                 known.push((case, method));
                 methods.push(method);

@@ -1,4 +1,4 @@
-//! Files of measured surfaces: checksums and formats.
+//! Files of measured surfaces and of tabulated spectra: checksums and formats.
 //!
 //! Tasks are keyed by the content of a file, not by its name. A resolved spec
 //! (`campaign.toml`) has the checksums in its table `[files]`, so that the status of a finished run is known
@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use toml::de::DeValue;
 
@@ -16,10 +17,10 @@ use super::cases::Cases;
 use super::entries::{entries, shown};
 use super::fault::Faults;
 use super::written::{Written, wrong_type};
-use super::{Case, Spec, SpecErrors, Value};
+use super::{Axis, Case, Spec, SpecErrors, Value, psd};
 use crate::formats::{Found, Refusal, recognize};
 use crate::keys::digest_of_file;
-use crate::model::{MeasuredSurface, SurfaceSource};
+use crate::model::SurfaceSource;
 use crate::paths::whole;
 
 /// Reads the table `[files]`.
@@ -67,21 +68,34 @@ pub(super) fn named(
     cases: &[Case],
     faults: &mut Faults<'_>,
 ) -> BTreeMap<String, String> {
-    let wanted: HashSet<&str> = measured(cases).map(|surface| surface.file.as_str()).collect();
+    let wanted: HashSet<&str> = cases.iter().filter_map(|case| case.params.surface.file()).collect();
     for (name, (_, span)) in files.iter().filter(|(name, _)| !wanted.contains(name.as_str())) {
         let message = format!("[files] has a checksum of \"{}\", which is not used by any case", shown(name));
         faults.add(
             span,
             message,
-            "remove the line, or name the file as surface.file exactly as it is written here".to_owned(),
+            "remove the line, or name the file as surface.file (surface.spectrum) exactly as it is written here"
+                .to_owned(),
         );
     }
     files.into_iter().map(|(name, (digest, _))| (name, digest)).collect()
 }
 
-/// The measured surfaces of some cases.
-fn measured(cases: &[Case]) -> impl Iterator<Item = &MeasuredSurface> {
-    cases.iter().filter_map(|case| case.params.surface.measured())
+/// A file that a case names: a scan with its dataset, or else the table of a spectrum.
+type Source<'a> = (&'a str, Option<&'a str>);
+
+/// Files of some cases.
+fn sources(cases: &[Case]) -> impl Iterator<Item = Source<'_>> {
+    cases.iter().filter_map(|case| {
+        let surface = &case.params.surface;
+        Some((surface.file()?, surface.measured().map(|scan| scan.dataset.as_str())))
+    })
+}
+
+/// Reports a fault of a file at its name in the text.
+fn blame(name: &str, text: &str, message: String, help: String, faults: &mut Faults<'_>) {
+    let at = if faults.is_full() { 0 } else { text.find(name).unwrap_or_default() };
+    faults.add(&(at..at + name.len().min(text.len() - at)), message, help);
 }
 
 /// The spec with the hashes of all files that it names, and of no others. Files that are only in the spec's
@@ -91,15 +105,14 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) ->
     let mut faults = Faults::new(text, file);
     let mut seen = HashSet::new();
     let mut moved: BTreeMap<String, String> = BTreeMap::new();
-    for surface in measured(&spec.cases) {
-        let name = &surface.file;
-        if !seen.insert((name, &surface.dataset)) {
+    for (name, dataset) in sources(&spec.cases) {
+        if !seen.insert((name, dataset)) {
             continue;
         }
         let checked = match known.get(name) {
             Some(digest) => Ok((of_resolved(name, folder, digest), digest.clone())),
             None => located(name, folder).and_then(|found| {
-                let digest = look(&found, folder, &surface.dataset, spec.files.get(&found))?;
+                let digest = look(&found, folder, dataset, spec.files.get(&found))?;
                 Ok((found, digest))
             }),
         };
@@ -108,21 +121,55 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) ->
                 if Path::new(name).is_absolute() {
                     spec.absolute_files.insert(found.clone());
                 }
-                if found != *name {
-                    moved.insert(name.clone(), found.clone());
+                if found != name {
+                    moved.insert(name.to_owned(), found.clone());
                 }
                 spec.files.insert(found, digest);
             }
             Err(Refusal { problem, help }) => {
-                let at = if faults.is_full() { 0 } else { text.find(name.as_str()).unwrap_or_default() };
-                let message = format!("the measured surface \"{name}\" cannot be read: {problem}");
-                faults.add(&(at..at + name.len().min(text.len() - at)), message, help);
+                let kind = if dataset.is_some() { "measured surface" } else { "spectrum" };
+                let message = format!("the {kind} \"{name}\" cannot be read: {problem}");
+                blame(name, text, message, help, &mut faults);
             }
         }
     }
+    tabulate(&mut spec, &moved, text, &mut faults);
     rename(&mut spec, &moved);
     join_copies(&mut spec);
     faults.finish(Some(spec))
+}
+
+/// Reads the tables of all spectra that have the contents of their checksums. A file that is missing or has
+/// changed is found out by the task that needs it.
+fn tabulate(spec: &mut Spec, moved: &BTreeMap<String, String>, text: &str, faults: &mut Faults<'_>) {
+    let mut known: HashMap<String, Result<Arc<psd::Read>, Refusal>> = HashMap::new();
+    for case in &mut spec.cases {
+        let SurfaceSource::Generated(surface) = &mut case.params.surface else { continue };
+        if !surface.is_tabulated() {
+            continue;
+        }
+        let name = surface.tabulated.file.clone();
+        let path = Path::new(moved.get(&name).unwrap_or(&name));
+        let digest = spec.files.get(moved.get(&name).unwrap_or(&name));
+        if digest.is_none() || digest_of_file(path).ok().as_ref() != digest {
+            continue;
+        }
+        let of = format!("{:?}", surface.tabulated);
+        let is_new = !known.contains_key(&of);
+        let read = known.entry(of).or_insert_with(|| psd::read(path, &surface.tabulated).map(Arc::new));
+        let covered = read.clone().and_then(|read| {
+            let table = surface.with_table(Arc::clone(&read.table), &read.reading);
+            psd::uncovered(&table).map_or(Ok(table), Err)
+        });
+        match covered {
+            Ok(covered) => *surface = covered,
+            Err(Refusal { problem, help }) if is_new || read.is_ok() => {
+                let message = format!("the spectrum \"{name}\" cannot be used: {problem}");
+                blame(&name, text, message, help, faults);
+            }
+            Err(_) => {}
+        }
+    }
 }
 
 /// Joins cases that differ only in the folder of a file with the same name and content.
@@ -130,12 +177,12 @@ fn join_copies(spec: &mut Spec) {
     let mut names: HashMap<(String, Option<OsString>), String> = HashMap::new();
     let (mut cases, mut moved) = (Cases::default(), Vec::new());
     for Case { sweeps, mut params } in std::mem::take(&mut spec.cases) {
-        if let SurfaceSource::Measured(surface) = &mut params.surface
-            && let Some(digest) = spec.files.get(&surface.file)
+        if let Some(file) = file_of(&mut params.surface)
+            && let Some(digest) = spec.files.get(file)
         {
-            let name = Path::new(&surface.file).file_name().map(ToOwned::to_owned);
-            let first = names.entry((digest.clone(), name)).or_insert_with(|| surface.file.clone());
-            surface.file.clone_from(first);
+            let name = Path::new(&file).file_name().map(ToOwned::to_owned);
+            let first = names.entry((digest.clone(), name)).or_insert_with(|| file.clone());
+            file.clone_from(first);
         }
         moved.push(cases.add(&sweeps, params));
     }
@@ -143,15 +190,22 @@ fn join_copies(spec: &mut Spec) {
     spec.auto_cases.iter_mut().for_each(|place| *place = moved.get(*place).copied().unwrap_or(*place));
 }
 
+/// The name of the file of a surface, if it has one.
+fn file_of(surface: &mut SurfaceSource) -> Option<&mut String> {
+    match surface {
+        SurfaceSource::Measured(surface) => Some(&mut surface.file),
+        SurfaceSource::Generated(surface) => {
+            Some(&mut surface.tabulated.file).filter(|file| !file.is_empty())
+        }
+    }
+}
+
 /// Gives files other names in all places of a spec.
 pub(super) fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
-    let own = spec.cases.iter_mut().filter_map(|case| match &mut case.params.surface {
-        SurfaceSource::Measured(surface) => Some(&mut surface.file),
-        SurfaceSource::Generated(_) => None,
-    });
-    let own = own.chain([&mut spec.base.measured.file]);
-    let axes =
-        spec.sweeps.iter_mut().flat_map(|sweep| &mut sweep.axes).filter(|axis| axis.key == "surface.file");
+    let own = spec.cases.iter_mut().filter_map(|case| file_of(&mut case.params.surface));
+    let own = own.chain([&mut spec.base.measured.file, &mut spec.base.generated.tabulated.file]);
+    let names_files = |axis: &&mut Axis| ["surface.file", "surface.spectrum"].contains(&axis.key);
+    let axes = spec.sweeps.iter_mut().flat_map(|sweep| &mut sweep.axes).filter(names_files);
     let swept = axes
         .flat_map(|axis| &mut axis.values)
         .filter_map(|value| if let Value::Text(name) = value { Some(name) } else { None });
@@ -216,7 +270,12 @@ fn tidy(path: &Path) -> PathBuf {
 
 /// The hash of a file in a format that is read, `hashed` if it is known. The format comes first: a file in
 /// another one is not read to its end.
-fn look(name: &str, folder: &Path, dataset: &str, hashed: Option<&String>) -> Result<String, Refusal> {
+fn look(
+    name: &str,
+    folder: &Path,
+    dataset: Option<&str>,
+    hashed: Option<&String>,
+) -> Result<String, Refusal> {
     let path = Path::new(name);
     let unreadable = |error: std::io::Error| {
         let help = match std::env::current_dir() {
@@ -232,8 +291,9 @@ fn look(name: &str, folder: &Path, dataset: &str, hashed: Option<&String>) -> Re
         };
         Refusal { problem: error.to_string(), help }
     };
-    let found = recognize(path).map_err(unreadable)??;
-    if found == Found::Hdf5 {
+    if let Some(dataset) = dataset
+        && recognize(path).map_err(unreadable)?? == Found::Hdf5
+    {
         inside(path, dataset)?;
     }
     hashed.cloned().map_or_else(|| digest_of_file(path).map_err(unreadable), Ok)

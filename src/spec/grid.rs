@@ -14,6 +14,7 @@ use super::files::named;
 use super::keys::{GENERATED, KEYS, find};
 use super::number::short;
 use super::probe::check_contact;
+use super::shape::{blamed, check_spectrum};
 use super::sweep::{AxisDraft, SweepDraft};
 use super::values::Values;
 use super::walk::{Draft, Origin, written};
@@ -217,15 +218,19 @@ fn check(case: &CaseParams, values: &Values, written: Written<'_>, faults: &mut 
         check_elements(case, options, values, written.0, faults);
     }
     match &case.surface {
-        SurfaceSource::Generated(surface) => check_generated(surface, written.0, faults),
+        SurfaceSource::Generated(surface) => {
+            check_generated(surface, written.0, faults);
+            check_spectrum(surface, written, faults);
+        }
         SurfaceSource::Measured(surface) => check_measured(case, surface, written, faults),
     }
 }
 
 /// Checks the requirements of a generated surface.
 fn check_generated(surface: &GeneratedSurface, origins: &[Origin], faults: &mut Faults<'_>) {
-    if surface.rms_height_m >= surface.length_m
-        && let Some(span) = blamed(["rms_height_m", "length_m"], origins)
+    if !surface.is_tabulated()
+        && surface.rms_height_m >= surface.length_m
+        && let Some(span) = blamed(&["rms_height_m", "length_m"], origins)
     {
         let (height, length) = (short(surface.rms_height_m), short(surface.length_m));
         let message =
@@ -237,35 +242,19 @@ fn check_generated(surface: &GeneratedSurface, origins: &[Origin], faults: &mut 
     let made = || format!("{zeta} times {points} points make a grid of {grid} x {grid} points");
     let keys = ["magnification", "points_per_shortest_wavelength"];
     if grid > u64::from(MAX_GRID)
-        && let Some(span) = blamed(keys, origins)
+        && let Some(span) = blamed(&keys, origins)
     {
         let message = format!("{}: at most {MAX_GRID} x {MAX_GRID} are allowed", made());
         let help = "reduce `magnification` or `points_per_shortest_wavelength`".to_owned();
         faults.add(&span, message, help);
     } else if !grid.is_multiple_of(2)
-        && let Some(span) = blamed(keys, origins)
+        && let Some(span) = blamed(&keys, origins)
     {
         let message = format!("{}: their number along a side must be even", made());
         let help =
             "choose an even product of `magnification` and `points_per_shortest_wavelength`".to_owned();
         faults.add(&span, message, help);
     }
-}
-
-/// The later written of two values of the surface; nothing, if one of them is not known.
-fn blamed(keys: [&str; 2], origins: &[Origin]) -> Option<Range<usize>> {
-    let mut later: Option<Range<usize>> = None;
-    for name in keys {
-        match &origins[find("surface", name)?] {
-            Origin::Default => {}
-            Origin::Faulty => return None,
-            Origin::Written(span) if later.as_ref().is_none_or(|known| known.start < span.start) => {
-                later = Some(span.clone());
-            }
-            Origin::Written(_) => {}
-        }
-    }
-    later
 }
 
 /// A sweep as written in the spec.

@@ -4,6 +4,7 @@ use super::{Value, Values};
 use crate::model::{
     Amplitudes, AttractionKind, Boundary, Choice, Coalescence, Control, Detrend, FarField, FastAxis, Filter,
     Interaction, JumpIn, KeptContacts, Method, Missing, Normalization, Nucleation, Opening, Slip,
+    SpectrumConvention, SpectrumKind,
 };
 
 /// One key of a table.
@@ -192,6 +193,44 @@ pub(super) static KEYS: &[Key] = &[
         word Normalization),
     key!(surface.amplitudes in generated.amplitudes, "", "Amplitudes of the Fourier components.";
         word Amplitudes),
+    key!(surface.longest_wavelength_m in generated.longest_wavelength_m, "λ_long", "Longest wavelength of a \
+         generated surface. 0: the side L. The magnification remains L over the shortest \
+         wavelength."; optional number Limits {
+        low: 0.0, above: false, high: 1.0, unit: " m", unit_name: "metres",
+        slip: Some((1e-6, "micrometres")),
+        note: "λ_long, longest wavelength; 0 for the side L",
+    }),
+    key!(surface.roll_off_m in generated.roll_off_m, "λ_r", "Roll-off wavelength of a generated surface: \
+         C(q) = C(2π/λ_r) for all longer wavelengths. 0: none."; optional number Limits {
+        low: 0.0, above: false, high: 1.0, unit: " m", unit_name: "metres",
+        slip: Some((1e-6, "micrometres")),
+        note: "λ_r, roll-off wavelength; 0 for a power law up to the longest wavelength",
+    }),
+    key!(surface.aspect_ratio in generated.aspect_ratio, "r", "Aspect ratio of the roughness of a generated \
+         surface: C(q) = C_iso(q') with q'² = r q_∥² + q_⊥²/r. Wavelengths along the lay are r times those \
+         across it."; number Limits {
+        low: 1.0, above: false, high: 100.0, unit: "", unit_name: "", slip: None,
+        note: "r, aspect ratio; 1 for an isotropic surface (default). For r < 1 turn angle_deg by 90",
+    }),
+    key!(surface.angle_deg in generated.angle_deg, "", "Direction of the lay with `aspect_ratio` above 1: \
+         angle from the x axis towards the y axis."; number Limits {
+        low: -180.0, above: false, high: 180.0, unit: " °", unit_name: "degrees", slip: None,
+        note: "angle of the lay in degrees, -180 to 180; default 0",
+    }),
+    key!(surface.spectrum in generated.tabulated.file, "", "CSV file of a tabulated spectrum: wavenumber q = \
+         2π/λ and density C. It is used as it is, without `rms_height_m`, `hurst`, `normalization` and \
+         `roll_off_m`."; text 4096, "the file of a spectrum, from the working directory or the folder of the \
+         spec"),
+    key!(surface.spectrum_kind in generated.tabulated.kind, "", "Quantity C in the table of the spectrum.";
+        word SpectrumKind),
+    key!(surface.spectrum_convention in generated.tabulated.convention, "", "Normalization of C in the table \
+         of the spectrum."; word SpectrumConvention),
+    key!(surface.spectrum_unit in generated.tabulated.unit, "", "Unit of length of both columns of the \
+         spectrum: \"um\" for q in 1/µm and C in µm⁴ or µm³. Empty: the heading states it.";
+        length "the unit of length of q and C, for example \"um\""),
+    key!(surface.spectrum_series in generated.tabulated.series, "", "Data series of a table of \
+         contact.engineering with several. Empty: there is one."; text 256, "the name of a data series in \
+         the table of the spectrum"),
     key!(surface.file in measured.file, "", "File of a measured surface. With this key, the surface is \
          imported and not generated.";
         text 4096, "the file of a measured surface, from the working directory or the folder of the spec"),
@@ -388,8 +427,40 @@ pub const MEASURED: [&str; 17] = [
     "tip_radius_m",
 ];
 /// Keys of `[surface]` that describe a generated one.
-pub const GENERATED: [&str; 6] =
-    ["length_m", "rms_height_m", "hurst", "magnification", "normalization", "amplitudes"];
+pub const GENERATED: [&str; 15] = [
+    "length_m",
+    "rms_height_m",
+    "hurst",
+    "magnification",
+    "normalization",
+    "amplitudes",
+    "longest_wavelength_m",
+    "roll_off_m",
+    "aspect_ratio",
+    "angle_deg",
+    "spectrum",
+    "spectrum_kind",
+    "spectrum_convention",
+    "spectrum_unit",
+    "spectrum_series",
+];
+/// Keys of `[surface]` that a tabulated spectrum replaces.
+pub const REPLACED: [&str; 4] = ["rms_height_m", "hurst", "normalization", "roll_off_m"];
+/// Keys of `[surface]` that describe the table of a spectrum.
+pub(super) const OF_TABLE: [&str; 4] =
+    ["spectrum_kind", "spectrum_convention", "spectrum_unit", "spectrum_series"];
+/// Keys that a resolved spec has only where they are not at their default.
+pub const WHERE_USED: [&str; 9] = [
+    "longest_wavelength_m",
+    "roll_off_m",
+    "aspect_ratio",
+    "angle_deg",
+    "spectrum",
+    "spectrum_kind",
+    "spectrum_convention",
+    "spectrum_unit",
+    "spectrum_series",
+];
 
 /// The place in [`KEYS`] of a key of a table.
 pub(super) fn find(table: &str, name: &str) -> Option<usize> {

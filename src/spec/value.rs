@@ -55,11 +55,12 @@ fn text(path: &str, most: usize, note: &str, value: &Written<'_>, faults: &mut F
         wrong_type(path, "a string", value.get_ref(), &span, format!("it is {note}"), faults);
         return None;
     };
-    if found.is_empty() && path == "surface.file" {
+    if found.is_empty() && ["surface.file", "surface.spectrum"].contains(&path) {
+        let without = if path == "surface.file" { "generated surface" } else { "power law" };
         faults.add(
             &span,
             format!("`{path}` is empty: it is {note}"),
-            "remove the key for a generated surface".to_owned(),
+            format!("remove the key for a {without}"),
         );
         return None;
     }

@@ -86,7 +86,7 @@ impl Values {
     #[must_use]
     pub fn case(&self) -> CaseParams {
         let surface = if self.measured.file.is_empty() {
-            SurfaceSource::Generated(self.generated.clone())
+            SurfaceSource::Generated(generated(&self.generated))
         } else {
             let points_per_shortest_wavelength = self.generated.points_per_shortest_wavelength;
             let default = MeasuredSurface::default().fast_axis;
@@ -151,6 +151,20 @@ impl Values {
             AttractionKind::Range => Attraction::Range { range_m: self.range_m },
         }
     }
+}
+
+/// A generated surface without the values that its spectrum does not read.
+fn generated(of: &GeneratedSurface) -> GeneratedSurface {
+    let mut surface = of.clone();
+    let default = GeneratedSurface::default();
+    if surface.aspect_ratio == default.aspect_ratio {
+        surface.angle_deg = default.angle_deg;
+    }
+    if surface.is_tabulated() {
+        let GeneratedSurface { rms_height_m, hurst, normalization, roll_off_m, .. } = default;
+        surface = GeneratedSurface { rms_height_m, hurst, normalization, roll_off_m, ..surface };
+    }
+    surface
 }
 
 impl From<&CaseParams> for Values {

@@ -2,7 +2,9 @@
 
 use std::fmt::{Error, Write as _};
 
-use super::keys::{GENERATED, KEYS, Key, MEASURED, OPTIONAL_TABLES, OTHER_LOADS, TABLES};
+use super::keys::{
+    GENERATED, KEYS, Key, MEASURED, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, TABLES, WHERE_USED,
+};
 use super::values::Values;
 use super::{Case, Spec, Value};
 use crate::model::{Choice as _, Method};
@@ -59,9 +61,13 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
 fn is_read(key: &Key, base: &Values) -> bool {
     let default = Values::default();
     let says = |key: &Key| (key.get)(base) != (key.get)(&default);
-    let others: &[&str] = if base.measured.file.is_empty() { &MEASURED } else { &GENERATED };
+    let is_generated = base.measured.file.is_empty();
     match key.table {
-        "surface" => !others.contains(&key.name) || says(key),
+        "surface" => {
+            let others: &[&str] = if is_generated { &MEASURED } else { &GENERATED };
+            let is_replaced = is_generated && base.generated.is_tabulated() && REPLACED.contains(&key.name);
+            !(others.contains(&key.name) || is_replaced || WHERE_USED.contains(&key.name)) || says(key)
+        }
         "cycle" if OTHER_LOADS.contains(&key.name) => says(key),
         "cycle" if key.name == "max_load" => base.max_force_n.is_empty() && base.max_pressure_pa.is_empty(),
         table if OPTIONAL_TABLES.contains(&table) => {

@@ -5,6 +5,7 @@ use super::cycle_input::{SurfaceRow, cycle_input, of_failed};
 use super::done::{Clock, Outcome};
 use super::error::incomplete;
 use super::runner::{Context, Single, run_single};
+use super::surface::scale;
 use super::{StageError, Tally, datapackage};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Choice;
@@ -179,6 +180,8 @@ fn case_input(
         .map(|cycle| &campaign.surfaces[cycle.surface]);
     // The import of a measured surface may have failed.
     let of_scan = of_case.filter(|of| surface.measured().is_some() && campaign.estimates_path(of).is_file());
+    let of_generated = surface.generated().and(of_case).map(|of| scale(campaign, of));
+    let known = of_generated.and_then(|scale| Some(scale.ok()?.rms_height_m));
     let row = of_scan.map(|of| SurfaceRow::read(campaign, of)).transpose()?;
     let square = row.as_ref().map(|row| row.square(params)).transpose()?;
     let lattice = lattice(params, square);
@@ -188,7 +191,7 @@ fn case_input(
         params,
         surface_file: campaign.label_of(surface),
         length_m: square.map(|square| square.length_m).or(generated.map(|of| of.length_m)),
-        rms_height_m: rms_height_m.or(generated.map(|of| of.rms_height_m)),
+        rms_height_m: rms_height_m.or(known),
         element_points: lattice.map(|lattice| lattice.points as f64),
         attraction_range_m: lattice.and_then(|lattice| lattice.range_m),
     };

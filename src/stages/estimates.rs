@@ -4,6 +4,7 @@ use super::StageError;
 use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
 use crate::model::{GeneratedSurface, Material};
 use crate::physics::jkr::Asperity;
+use crate::physics::surface::edges::Edges;
 use crate::physics::surface::measured::find_measured;
 use crate::physics::surface::spectrum::Spectrum;
 use crate::physics::surface::summits::{Summit, Summits, find_summits};
@@ -18,9 +19,9 @@ use crate::store::{Frame, FrameError, parquet};
 use ndarray::ArrayView2;
 use std::path::Path;
 
-/// Target spectrum of a case; a measured surface has none.
+/// Target spectrum of a case; a measured surface has none, nor has a table whose file is missing.
 pub(super) fn target(params: &CaseParams) -> Option<Spectrum> {
-    params.surface.generated().map(GeneratedSurface::spectrum)
+    params.surface.generated().filter(|surface| surface.has_spectrum()).map(GeneratedSurface::spectrum)
 }
 
 /// True for a number that a table may hold.
@@ -36,6 +37,8 @@ pub struct Examined {
     pub edge_count: usize,
     /// Estimates.
     pub estimates: SurfaceEstimates,
+    /// Texture; nothing for a generated surface with an isotropic spectrum, and for a few points.
+    pub(super) texture: Option<Texture>,
 }
 
 impl Examined {
@@ -50,7 +53,8 @@ impl Examined {
         let (found, edge_count) = find_measured(square, points)?;
         let estimates =
             SurfaceEstimates::of_measured(square, cut_off_m, roughness(header), found.list.len())?;
-        Ok(Self { found, edge_count, estimates })
+        let texture = header.measured.as_ref().and_then(|of| of.texture);
+        Ok(Self { found, edge_count, estimates, texture })
     }
 
     /// Of the heights \[m\] of a generated surface.
@@ -64,7 +68,9 @@ impl Examined {
             find_summits(heights, header.length_m, f64::from(surface.points_per_shortest_wavelength))?;
         let estimates =
             SurfaceEstimates::of_generated(&surface.spectrum(), seed, roughness(header), found.list.len());
-        Ok(Self { found, edge_count: 0, estimates })
+        let is_isotropic = surface.spectrum().shape.is_isotropic();
+        let texture = if is_isotropic { None } else { Texture::of(heights, Edges::Periodic)? };
+        Ok(Self { found, edge_count: 0, estimates, texture })
     }
 
     /// Tabor parameter of the sharpest asperity; nothing without asperities.
@@ -89,8 +95,8 @@ pub(super) fn surface_table(
     unit: &SurfaceUnit,
     header: &SurfaceHeader,
     of: &SurfaceEstimates,
+    texture: Option<&Texture>,
 ) -> Result<Frame, FrameError> {
-    let texture = header.measured.as_ref().and_then(|of| of.texture.as_ref());
     let artefacts = header.artefact_columns();
     let artefact =
         |name: &str| artefacts.iter().find(|(known, _)| *known == name).and_then(|(_, value)| *value);

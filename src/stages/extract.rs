@@ -35,7 +35,7 @@ impl SurfaceStage for Extract {
 /// Finds the asperities of a surface and writes their table and that of its estimates.
 fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageError> {
     let (header, heights) = read_surface(&campaign.surface_path(unit))?;
-    let Examined { found, edge_count, estimates } = match &unit.params {
+    let Examined { found, edge_count, estimates, texture } = match &unit.params {
         SurfaceSource::Measured(_) => Examined::of_measured(&header, heights.view())?,
         SurfaceSource::Generated(of) => {
             Examined::of_generated(of, &seed(campaign, unit), &header, heights.view())?
@@ -53,7 +53,7 @@ fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErro
     if header.measured.is_some() {
         keys.push(("edge_count", edge_count.to_string()));
     }
-    let estimates = surface_table(unit, &header, &estimates)?;
+    let estimates = surface_table(unit, &header, &estimates, texture.as_ref())?;
     Ok(Outcome::of(vec![
         parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?,
         parquet::write_table(&campaign.estimates_path(unit), &estimates, &keys[..1])?,

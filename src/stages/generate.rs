@@ -7,7 +7,7 @@ use super::surface::SurfaceStage;
 use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
 use crate::formats::recognize;
 use crate::keys::digest_of_file;
-use crate::model::{MeasuredSurface, SurfaceSource};
+use crate::model::{GeneratedSurface, MeasuredSurface, SurfaceSource};
 use crate::paths::whole;
 use crate::physics::PhysicsError;
 use crate::physics::memory;
@@ -34,6 +34,9 @@ impl SurfaceStage for Generate {
     }
 }
 
+const OTHER_FILE: &str = "the file differs from its checksum in [files] of the spec\nhelp: remove this line \
+                          to recompute with the present file";
+
 /// Imports a measured surface.
 fn import(campaign: &Campaign, unit: &SurfaceUnit, surface: &MeasuredSurface) -> Result<Outcome, StageError> {
     // Messages name the file by a path that holds in any folder.
@@ -51,16 +54,29 @@ fn import(campaign: &Campaign, unit: &SurfaceUnit, surface: &MeasuredSurface) ->
         .map_err(|refusal| StageError::Measured { path: path.clone(), why: refusal.to_string() })?;
     let digest = digest_of_file(path).map_err(|error| refuse(error.to_string()))?;
     if campaign.spec.files.get(&surface.file) != Some(&digest) {
-        return Err(refuse(
-            "the file differs from its checksum in [files] of the spec\nhelp: remove this line to recompute \
-             with the present file"
-                .to_owned(),
-        ));
+        return Err(refuse(OTHER_FILE.to_owned()));
     }
     let params =
         MeasuredSurface { file: path.to_str().unwrap_or(&surface.file).to_owned(), ..surface.clone() };
     let Imported { prepared, header, .. } = measure(&params, &digest, &unit.key)?;
     Ok(Outcome::of(vec![write_surface(&campaign.surface_path(unit), &header, prepared.heights_m.view())?]))
+}
+
+/// Checks that the file of a tabulated spectrum has been read, and is that of the checksum.
+fn check_table(campaign: &Campaign, surface: &GeneratedSurface) -> Result<(), StageError> {
+    let file = &surface.tabulated.file;
+    let path = whole(Path::new(file));
+    let digest = match digest_of_file(&path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            return Err(StageError::Lost { path, places: campaign.places_of(file) });
+        }
+        Err(error) => return Err(StageError::Changed { path, why: error.to_string() }),
+        Ok(digest) => digest,
+    };
+    if campaign.spec.files.get(file) != Some(&digest) || !surface.has_spectrum() {
+        return Err(StageError::Changed { path, why: OTHER_FILE.to_owned() });
+    }
+    Ok(())
 }
 
 /// Synthesizes a surface, or imports a measured one.
@@ -69,6 +85,9 @@ fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErr
         SurfaceSource::Measured(surface) => return import(campaign, unit, surface),
         SurfaceSource::Generated(surface) => surface,
     };
+    if params.is_tabulated() {
+        check_table(campaign, params)?;
+    }
     let seed = realization_seed(campaign.spec.seed, u64::from(unit.realization));
     let (spectrum, grid) = (params.spectrum(), params.grid() as usize);
     memory::check(synthesis_bytes(&spectrum, grid))?;
@@ -95,6 +114,11 @@ fn generate(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErr
             points_per_shortest_wavelength: f64::from(params.points_per_shortest_wavelength),
             normalization: params.normalization,
             amplitudes: params.amplitudes,
+            longest_wavelength_m: params.longest_wavelength_m,
+            roll_off_m: params.roll_off_m,
+            aspect_ratio: params.aspect_ratio,
+            angle_deg: params.angle_deg,
+            left_out_m: params.is_tabulated().then(|| spectrum.left_out_m()),
         }),
         measured: None,
     };

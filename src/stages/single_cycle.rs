@@ -189,12 +189,18 @@ pub(super) fn parameters(case: &CaseParams, file: Option<&str>, max_load: f64) -
     };
     let mut parts = match &case.surface {
         SurfaceSource::Measured(_) => vec![file.unwrap_or_default().to_owned()],
-        SurfaceSource::Generated(surface) => vec![
-            format!("ζ = {}", surface.magnification),
-            format!("H = {}", significant(surface.hurst, 4)),
-            with_unit("h_rms", "rms_height_m", surface.rms_height_m),
-            with_unit("L", "length_m", surface.length_m),
-        ],
+        SurfaceSource::Generated(surface) => {
+            let law = if surface.is_tabulated() {
+                vec![file.unwrap_or_default().to_owned()]
+            } else {
+                vec![
+                    format!("H = {}", significant(surface.hurst, 4)),
+                    with_unit("h_rms", "rms_height_m", surface.rms_height_m),
+                ]
+            };
+            let zeta = vec![format!("ζ = {}", surface.magnification)];
+            [zeta, law, vec![with_unit("L", "length_m", surface.length_m)], of_shape(surface)].concat()
+        }
     };
     parts.push(with_unit("E*", "contact_modulus_pa", material.contact_modulus_pa));
     parts.push(with_unit("Δγ", "work_of_adhesion_j_m2", material.work_of_adhesion_j_m2));
@@ -211,6 +217,21 @@ pub(super) fn parameters(case: &CaseParams, file: Option<&str>, max_load: f64) -
     parts.extend(choices.iter().map(|(key, word)| format!("{key} = \"{word}\"")));
     parts.push(format!("F_max/(E*A₀) = {}", significant(max_load, 4)));
     parts.join(", ")
+}
+
+/// Parameters of the shape of a spectrum that is no plain power law.
+fn of_shape(surface: &GeneratedSurface) -> Vec<String> {
+    let length = |symbol: &str, value: Option<f64>| {
+        let labels = value.map(|value| labels_with_unit("length_m", &[value])).unwrap_or_default();
+        labels.into_iter().map(|text| format!("{symbol} = {text}")).collect::<Vec<_>>()
+    };
+    let mut parts = length("λ_r", surface.roll_off_m);
+    parts.extend(length("λ_long", surface.longest_wavelength_m));
+    if surface.aspect_ratio != 1.0 {
+        parts.push(format!("r = {}", significant(surface.aspect_ratio, 4)));
+        parts.push(format!("lay at {}°", significant(surface.angle_deg, 4)));
+    }
+    parts
 }
 
 /// The wavenumber q/qL up to which rings of the spectrum have all their modes below the cut-off: the mean of
@@ -230,8 +251,21 @@ fn highest_whole_ring(header: &SurfaceHeader) -> f64 {
 }
 
 /// A target spectrum at the realised rms height: `C qL²/h_rms²` over q/qL, from the longest to the shortest
-/// waves, such that the sum over the lattice of modes is 1, as it is for the surface.
+/// waves, such that the sum over the lattice of modes is 1, as it is for the surface. Of an anisotropic
+/// spectrum it is the mean over directions.
 fn asked(target: &Spectrum) -> Vec<(f64, f64)> {
+    let [longest, shortest] = target.band_1_m();
+    if !target.shape.is_plain() {
+        let lowest = target.lowest_wavenumber();
+        let unit = lowest * lowest / eq10_variance(target);
+        let at = |k: usize| longest * (shortest / longest).powf((k as f64 + 0.5) / (POINTS as f64 + 1.0));
+        // The mean over a narrow ring.
+        let mean = |q: f64| {
+            let [low, high] = [0.999, 1.001].map(|factor| factor * q);
+            target.integral(0.0, low, high) / (std::f64::consts::PI * (high * high - low * low))
+        };
+        return (0..=POINTS).map(at).map(|q| (q / lowest, unit * mean(q))).collect();
+    }
     // `C qL²` of Eq 10 at qL [m²].
     let unit = target.prefactor() * target.lowest_wavenumber().powi(2) / eq10_variance(target);
     let at = |k: usize| f64::from(target.magnification).powf(k as f64 / POINTS as f64);
@@ -240,5 +274,5 @@ fn asked(target: &Spectrum) -> Vec<(f64, f64)> {
 
 /// The sum of Eq 10 over the lattice of modes \[m²\]. It exceeds the integral, which defines the rms height.
 fn eq10_variance(target: &Spectrum) -> f64 {
-    Spectrum { normalization: Normalization::Spectrum, ..*target }.lattice_moments().m0_m2
+    Spectrum { normalization: Normalization::Spectrum, ..target.clone() }.lattice_moments().m0_m2
 }

@@ -5,7 +5,8 @@ use super::failure::in_the_way;
 use super::runner::{Context, Tasks};
 use super::{StageError, failure};
 use crate::campaign::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit, Unit};
-use crate::model::{GeneratedSurface, SurfaceSource};
+use crate::model::{GeneratedSurface, Material, SurfaceSource};
+use crate::stats::MOST_LEFT_OUT;
 use crate::store::hdf5::{SurfaceHeader, read_header};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -18,15 +19,47 @@ pub(super) struct Scale {
     pub(super) length_m: f64,
     /// Rms height: target of a generated surface, value of a measured one \[m\].
     pub(super) rms_height_m: f64,
+    /// Flattening of the wavelengths of a tabulated spectrum below the shortest one, `U_el/E*` \[m\].
+    pub(super) left_out_m: f64,
 }
 
-/// Scale of a surface; that of a measured one is read from its file.
-pub(super) fn scale(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Scale, StageError> {
-    if let SurfaceSource::Generated(GeneratedSurface { length_m, rms_height_m, .. }) = unit.params {
-        return Ok(Scale { length_m, rms_height_m });
+impl Scale {
+    /// Scale of a generated surface whose spectrum is known.
+    pub(super) fn of_generated(surface: &GeneratedSurface) -> Self {
+        let GeneratedSurface { length_m, rms_height_m, .. } = *surface;
+        Self { length_m, rms_height_m, left_out_m: surface.spectrum().left_out_m() }
     }
-    let SurfaceHeader { length_m, rms_height_m, .. } = read_header(&campaign.surface_path(unit))?;
-    Ok(Scale { length_m, rms_height_m })
+
+    /// Scale of a surface with this header.
+    pub(super) fn of(header: &SurfaceHeader) -> Self {
+        let generated = header.generated.as_ref();
+        Self {
+            length_m: header.length_m,
+            rms_height_m: generated.map_or(header.rms_height_m, |of| of.target_rms_height_m),
+            left_out_m: generated.and_then(|of| of.left_out_m).unwrap_or_default(),
+        }
+    }
+
+    /// Material of a cycle: the elastic energy of roughness below the shortest wavelength of a tabulated
+    /// spectrum is taken off the work of adhesion, where it is small.
+    pub(super) fn material(self, material: &Material) -> Material {
+        let energy_j_m2 = material.contact_modulus_pa * self.left_out_m;
+        let mut material = *material;
+        if energy_j_m2 <= MOST_LEFT_OUT * material.work_of_adhesion_j_m2 {
+            material.work_of_adhesion_j_m2 -= energy_j_m2;
+        }
+        material
+    }
+}
+
+/// Scale of a surface; that of a measured one, and of a table whose file is missing, is read from its file.
+pub(super) fn scale(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Scale, StageError> {
+    if let SurfaceSource::Generated(surface) = &unit.params
+        && surface.has_spectrum()
+    {
+        return Ok(Scale::of_generated(surface));
+    }
+    Ok(Scale::of(&read_header(&campaign.surface_path(unit))?))
 }
 
 /// A stage with one task for each surface.

@@ -32,7 +32,7 @@ const fn warning(
 /// All warnings by severity, which is the order of their codes in the column `caution`: results outside the
 /// model, then results that depend on a rule of the model, then incomplete or inaccurate results, then small
 /// samples.
-pub const CAUTIONS: [Caution; 26] = [
+pub const CAUTIONS: [Caution; 27] = [
     warning(
         "sticky",
         "near full contact",
@@ -119,6 +119,13 @@ pub const CAUTIONS: [Caution; 26] = [
         "Asperities are not spheres, and expected ratios, Θ_DK and Nayak's density hold for isotropic \
          surfaces only.",
         "Use `method = \"boundary_elements\"`; quote the loop only.",
+    ),
+    warning(
+        "left_out",
+        "roughness below the shortest wavelength",
+        "U_el/Δγ of the wavelengths of the table below the shortest one is above 5 %",
+        "They are left out: the adhesion of the simulated surface is too strong.",
+        "Use a larger `magnification`, so that more of the table is simulated.",
     ),
     warning(
         "outliers",
@@ -313,6 +320,7 @@ pub fn condition(code: &str) -> Option<&'static str> {
     match code {
         "failed" => Some("`failed_count` > 0"),
         "not_reached" => Some("`not_reached_count` > 0"),
+        "left_out" => Some("`left_out_ratio` > 0.05"),
         "full_contact" => Some("`area_at_max_load_mean` = 1, boundary elements"),
         "coarse_steps" => Some("`approach_step`/2^`halvings` > 0.05, boundary elements"),
         "incomplete" => Some("finished realizations < `planned_count`"),
@@ -335,6 +343,9 @@ const OF_ASPERITIES: [&str; 9] = [
     "few_contacts",
     "few_asperities",
 ];
+
+/// Largest share of the work of adhesion for the roughness of a table below the shortest wavelength.
+pub const MOST_LEFT_OUT: f64 = 0.05;
 
 /// Shortest step of boundary elements, of the rms height, above which events are not located.
 pub const LONGEST_STEP: f64 = 0.05;
@@ -365,11 +376,15 @@ pub(super) fn caution(
         Some((_, Value::Real(number))) => Some(*number),
         _ => None,
     };
+    let parameter = |column: &str| {
+        case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.number())
+    };
     let passed = |word: &str| {
         LIMITS.iter().any(|limit| limit.caution == word && limit.is_passed(number(limit.column)))
     };
     let holds = |word: &str| match word {
         _ if by_elements && OF_ASPERITIES.contains(&word) => false,
+        "left_out" => parameter("left_out_ratio").is_some_and(|ratio| ratio > MOST_LEFT_OUT),
         "full_contact" => by_elements && number("area_at_max_load_mean").is_some_and(|area| area >= 1.0),
         "coarse_steps" => by_elements && shortest_step(case) > LONGEST_STEP,
         "incomplete" => finished_count < case.planned_count,

@@ -32,7 +32,7 @@ use std::path::PathBuf;
 
 pub use avalanches::avalanches;
 pub use cases::cases;
-pub use cautions::{CAUTIONS, Caution, LIMITS, LONGEST_STEP, Limit, MANY_STEPS, condition};
+pub use cautions::{CAUTIONS, Caution, LIMITS, LONGEST_STEP, Limit, MANY_STEPS, MOST_LEFT_OUT, condition};
 pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, matched, singles, together};
 pub use curves::curves;
 pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};

@@ -110,8 +110,14 @@ pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError
     });
     // The first row with the method of each row.
     let same_method: Vec<usize> = places.collect();
-    // The size and roughness of a measured surface follow from its file and are not named.
-    let follows = |name: &str| measured && matches!(name, "rms_height_m" | "length_m");
+    // The size and roughness of a measured surface follow from its file and are not named; nor are those of
+    // a table.
+    let tables = cases.text_or_null("spectrum_file")?;
+    let tabulated = rows.iter().any(|row| tables.get(*row).is_some_and(Option::is_some));
+    let follows = |name: &str| {
+        measured && matches!(name, "rms_height_m" | "length_m")
+            || tabulated && matches!(name, "rms_height_m" | "spectrum_reading" | "left_out_ratio")
+    };
     for parameter in parameters_by_rank().into_iter().filter(|parameter| !follows(parameter.column.name)) {
         let values = match cases.column(parameter.column.name)? {
             ColumnData::F64(all) => {

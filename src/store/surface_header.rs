@@ -180,6 +180,18 @@ pub struct Generated {
     pub normalization: Normalization,
     /// The moduli of its Fourier modes.
     pub amplitudes: Amplitudes,
+    /// Longest wavelength \[m\], if it is below L.
+    pub longest_wavelength_m: Option<f64>,
+    /// Roll-off wavelength \[m\], if there is one.
+    pub roll_off_m: Option<f64>,
+    /// Aspect ratio of the roughness.
+    pub aspect_ratio: f64,
+    /// Direction of the lay \[°\].
+    pub angle_deg: f64,
+    /// Flattening `U_el/E*` of the wavelengths of a tabulated spectrum below the shortest one \[m\];
+    /// nothing for
+    /// a power law. The Hurst exponent has no meaning for a table.
+    pub left_out_m: Option<f64>,
 }
 
 /// Writes a header as attributes of the root.
@@ -207,7 +219,26 @@ pub(super) fn write(file: &File, header: &SurfaceHeader) -> Result<(), Cause> {
     write_number(file, "seed", generated.seed)?;
     write_finite(file, "points_per_shortest_wavelength", generated.points_per_shortest_wavelength)?;
     write_word(file, "normalization", generated.normalization.word())?;
-    write_word(file, "amplitudes", generated.amplitudes.word())
+    write_word(file, "amplitudes", generated.amplitudes.word())?;
+    write_shape(file, generated)
+}
+
+/// Writes the shape of a spectrum that is no plain power law.
+fn write_shape(file: &File, generated: &Generated) -> Result<(), Cause> {
+    if let Some(longest_m) = generated.longest_wavelength_m {
+        write_finite(file, "longest_wavelength_m", longest_m)?;
+    }
+    if let Some(roll_off_m) = generated.roll_off_m {
+        write_finite(file, "roll_off_m", roll_off_m)?;
+    }
+    if generated.aspect_ratio != 1.0 {
+        write_finite(file, "aspect_ratio", generated.aspect_ratio)?;
+        write_finite(file, "angle_deg", generated.angle_deg)?;
+    }
+    if let Some(left_out_m) = generated.left_out_m {
+        write_finite(file, "tabulated_left_out_m", left_out_m)?;
+    }
+    Ok(())
 }
 
 fn write_measured(file: &File, measured: &Measured) -> Result<(), Cause> {
@@ -309,7 +340,9 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
         .into());
     }
     let words = &file.group(if file.link_exists(COPIES) { COPIES } else { "/" })?;
-    let generated = if names.iter().any(|name| name == "hurst") {
+    let has = |wanted: &str| names.iter().any(|name| name == wanted);
+    let of_shape = |name: &str| has(name).then(|| finite(file, name)).transpose();
+    let generated = if has("hurst") {
         Some(Generated {
             target_rms_height_m: finite(file, "target_rms_height_m")?,
             hurst: finite(file, "hurst")?,
@@ -318,6 +351,11 @@ pub(super) fn read(file: &File) -> Result<SurfaceHeader, Cause> {
             points_per_shortest_wavelength: finite(file, "points_per_shortest_wavelength")?,
             normalization: choice(words, "normalization")?,
             amplitudes: choice(words, "amplitudes")?,
+            longest_wavelength_m: of_shape("longest_wavelength_m")?,
+            roll_off_m: of_shape("roll_off_m")?,
+            aspect_ratio: of_shape("aspect_ratio")?.unwrap_or(1.0),
+            angle_deg: of_shape("angle_deg")?.unwrap_or(0.0),
+            left_out_m: of_shape("tabulated_left_out_m")?,
         })
     } else {
         None

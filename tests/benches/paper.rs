@@ -1,6 +1,7 @@
 //! The paper's material and its surfaces of H = 0.8.
 
 use hysteron::model::{Amplitudes, Material, Normalization};
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::Spectrum;
 
 pub const MATERIAL: Material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };
@@ -13,5 +14,6 @@ pub fn spectrum(magnification: u32) -> Spectrum {
         magnification,
         normalization: Normalization::Sample,
         amplitudes: Amplitudes::Fixed,
+        shape: Shape::default(),
     }
 }

@@ -10,6 +10,7 @@ use hysteron::physics::cycle::{Cycle, Method};
 use hysteron::physics::elements::path::cycle::Turning;
 use hysteron::physics::elements::{Elements, Options};
 use hysteron::physics::surface::HeightMap;
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 
@@ -24,7 +25,8 @@ pub const MAX_LOAD: f64 = 0.0071;
 /// The errors of [`Elements::new`] and [`Method::run`].
 pub fn run() -> Result<Cycle<Turning>, PhysicsError> {
     let (normalization, amplitudes) = (Normalization::Spectrum, Amplitudes::Fixed);
-    let spectrum = Spectrum { length_m: 1e-3, rms_height_m: 5e-6, hurst: 0.8, magnification: 8, normalization, amplitudes };
+    let spectrum =
+        Spectrum { length_m: 1e-3, rms_height_m: 5e-6, hurst: 0.8, magnification: 8, normalization, amplitudes, shape: Shape::default() };
     let surface = synthesize(&spectrum, &realization_seed(2021, 3), POINTS);
     let map = HeightMap {
         heights_m: surface.heights_m.view(),

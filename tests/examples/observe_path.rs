@@ -8,6 +8,7 @@ use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, JumpIn, Ke
 use hysteron::physics::asperities::contact::{Problem, Rules};
 use hysteron::physics::asperities::{Asperities, Checkpoint, Cycle, Settings};
 use hysteron::physics::cycle::{Effort, Method};
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::summits::find_summits;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
@@ -35,7 +36,8 @@ pub struct Observed {
 /// The errors of [`Problem::new`] and [`run_from`].
 pub fn run() -> Result<Observed, PhysicsError> {
     let (normalization, amplitudes) = (Normalization::Sample, Amplitudes::Fixed);
-    let spectrum = Spectrum { length_m: 1e-3, rms_height_m: 5e-6, hurst: 0.8, magnification: 8, normalization, amplitudes };
+    let spectrum =
+        Spectrum { length_m: 1e-3, rms_height_m: 5e-6, hurst: 0.8, magnification: 8, normalization, amplitudes, shape: Shape::default() };
     let surface = synthesize(&spectrum, &realization_seed(2021, 0), (POINTS * spectrum.magnification) as usize);
     let summits = find_summits(surface.heights_m.view(), spectrum.length_m, f64::from(POINTS))?.list;
     let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.07, interaction_range_m: 1e-9 };

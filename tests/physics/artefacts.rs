@@ -6,6 +6,7 @@ use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::outliers::{find_outliers, replace_outliers};
 use hysteron::physics::surface::periodogram::{periodogram, windowed_periodogram};
 use hysteron::physics::surface::rows::{align, line_jump};
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::{Moments, Spectrum};
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use hysteron::physics::surface::tip::{curvature_ratio, reliability_cutoff};
@@ -22,6 +23,7 @@ fn rough(hurst: f64, (rows, columns): (usize, usize), points: usize, seed: u64) 
         magnification: magnification as u32,
         normalization: Normalization::Sample,
         amplitudes: Amplitudes::Gaussian,
+        shape: Shape::default(),
     };
     let surface = synthesize(&spectrum, &realization_seed(seed, 0), points * magnification).heights_m;
     surface.slice(s![..rows, ..columns]).to_owned()
@@ -305,6 +307,7 @@ fn law_a_blunt_tip_is_seen_by_its_rounded_summits_and_sharp_valleys() {
             magnification: 24,
             normalization: Normalization::Sample,
             amplitudes: Amplitudes::Gaussian,
+            shape: Shape::default(),
         };
         let heights = synthesize(&spectrum, &realization_seed(seed, 0), 192).heights_m;
         assert_eq!(curvature_ratio(heights.view(), [1.0; 2], 2), None, "H = {hurst}");
@@ -326,6 +329,7 @@ fn law_periodic_surfaces_have_no_outliers_at_their_edges() {
                 magnification,
                 normalization: Normalization::Sample,
                 amplitudes: Amplitudes::Fixed,
+                shape: Shape::default(),
             };
             let mut heights = synthesize(&spectrum, &realization_seed(seed, 0), 8 * magnification as usize).heights_m;
             assert_eq!(find_outliers(heights.view(), Edges::Periodic), []);

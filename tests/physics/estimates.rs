@@ -105,7 +105,7 @@ fn law_estimates_follow_a_change_of_units() {
     let scaled_spectrum = hysteron::physics::surface::spectrum::Spectrum {
         length_m: length * spectrum.length_m,
         rms_height_m: length * spectrum.rms_height_m,
-        ..spectrum
+        ..spectrum.clone()
     };
     let rough = surface.roughness;
     let roughness = Roughness { rms_height_m: length * rough.rms_height_m, rms_curvature_1_m: rough.rms_curvature_1_m / length, ..rough };

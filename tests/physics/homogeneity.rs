@@ -5,6 +5,7 @@ use hysteron::model::{Amplitudes, Boundary, Coalescence, Interaction, KeptContac
 use hysteron::physics::asperities::contact::{Problem, Rules};
 use hysteron::physics::asperities::field::spot_field::spot_field_as_printed;
 use hysteron::physics::jkr::Asperity;
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::{Moments, Spectrum};
 use hysteron::physics::surface::summits::{Summit, find_summits};
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
@@ -36,8 +37,9 @@ impl Units {
         }
     }
 
-    fn spectrum(self, s: Spectrum) -> Spectrum {
-        Spectrum { length_m: s.length_m * self.length, rms_height_m: s.rms_height_m * self.length, ..s }
+    fn spectrum(self, s: &Spectrum) -> Spectrum {
+        let shape = Shape { roll_off_m: s.shape.roll_off_m.map(|length| length * self.length), ..s.shape.clone() };
+        Spectrum { length_m: s.length_m * self.length, rms_height_m: s.rms_height_m * self.length, shape, ..s.clone() }
     }
 
     fn summit(self, s: &Summit) -> Summit {
@@ -122,9 +124,11 @@ fn law_a_spot_scales() {
 #[test]
 fn law_spectrum_and_theory_scale() {
     for units in several() {
-        for normalization in [Normalization::Sample, Normalization::Spectrum] {
-            let p = Spectrum { normalization, ..paper_spectrum(0.7, 40) };
-            let q = units.spectrum(p);
+        let shapes = [Shape::default(), Shape { roll_off_m: Some(0.8 * LENGTH), ..Shape::default() }];
+        let of_shape = |shape| [Normalization::Sample, Normalization::Spectrum].map(|normalization| (normalization, shape));
+        for (normalization, shape) in shapes.iter().flat_map(of_shape) {
+            let p = Spectrum { normalization, shape: shape.clone(), ..paper_spectrum(0.7, 40) };
+            let q = units.spectrum(&p);
             let scaled = |what: &str, got: f64, want: f64, l: f64, f: f64| close(what, got, want * units.of(l, f), ROUNDING);
             scaled("qL", q.lowest_wavenumber(), p.lowest_wavenumber(), -1.0, 0.0);
             scaled("C0", q.prefactor(), p.prefactor(), 4.0, 0.0);
@@ -182,12 +186,12 @@ fn law_surface_and_summits_scale() {
     for units in several().into_iter().take(3) {
         for amplitudes in [Amplitudes::Fixed, Amplitudes::Gaussian] {
             let p = Spectrum { amplitudes, ..paper_spectrum(0.8, 8) };
-            let q = units.spectrum(p);
-            let [a, b] = [p, q].map(|s| synthesize(&s, &realization_seed(1, 1), 64));
+            let q = units.spectrum(&p);
+            let [a, b] = [&p, &q].map(|s| synthesize(s, &realization_seed(1, 1), 64));
             for (g, h) in b.heights_m.iter().zip(&a.heights_m) {
                 near("height", *g, h * units.length, 1e-14 * RMS * units.length);
             }
-            let [s, t] = [(p, &a), (q, &b)].map(|(spectrum, made)| find_summits(made.heights_m.view(), spectrum.length_m, 8.0).unwrap());
+            let [s, t] = [(&p, &a), (&q, &b)].map(|(spectrum, made)| find_summits(made.heights_m.view(), spectrum.length_m, 8.0).unwrap());
             assert_eq!((s.list.len(), s.rejected, s.unrefined), (t.list.len(), t.rejected, t.unrefined));
             assert!(!s.list.is_empty());
             for (m, n) in s.list.iter().zip(&t.list) {

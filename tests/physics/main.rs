@@ -33,6 +33,7 @@ mod printed;
 mod properties;
 mod scan_filter;
 mod self_affine;
+mod shape;
 mod spectrum;
 mod summits;
 mod synthesis;
@@ -101,6 +102,7 @@ mod support {
     use hysteron::physics::surface::SquareMap;
     use hysteron::physics::surface::edges::Edges;
     use hysteron::physics::surface::measured::Prepared;
+    use hysteron::physics::surface::shape::Shape;
     use hysteron::physics::surface::spectrum::Spectrum;
     use hysteron::physics::surface::summits::{Summit, find_summits};
     use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
@@ -171,6 +173,7 @@ mod support {
             magnification,
             normalization: Normalization::Sample,
             amplitudes: Amplitudes::Fixed,
+            shape: Shape::default(),
         }
     }
 

@@ -7,6 +7,7 @@ use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
 use hysteron::physics::surface::periodogram::{Estimate, periodogram, windowed_periodogram};
 use hysteron::physics::surface::self_affine::fit_self_affine;
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::summits::find_summits;
 use hysteron::physics::surface::synthesis::{Surface, realization_seed, synthesize};
@@ -29,6 +30,7 @@ fn generated(magnification: u32, hurst: f64, realization: u64) -> Surface {
         magnification,
         normalization: Normalization::Spectrum,
         amplitudes: Amplitudes::Fixed,
+        shape: Shape::default(),
     };
     synthesize(&spectrum, &realization_seed(11, realization), 8 * magnification as usize)
 }
@@ -273,6 +275,41 @@ fn val_the_window_shows_the_spectrum_of_a_part_of_a_surface() {
     // A ring of m modes under a window that makes some two of them one scatters by sqrt(2/m): at 8 modes, 0.3.
     assert!(far(&windowed) < 0.5, "{}", far(&windowed));
     assert!(far(&bare) > 1.5 * far(&windowed), "{} {}", far(&bare), far(&windowed));
+}
+
+/// Finding of a user: with an S-filter cut-off below the shortest wavelength of the surface, a fit across the end of
+/// the spectrum gave H = 17.8.
+#[test]
+fn reg_the_fit_ends_where_the_spectrum_ends() {
+    for (hurst, roll_off, periodic) in [(0.3, 4.0, true), (0.8, 8.0, true), (0.8, 8.0, false), (0.5, 4.0, false)] {
+        let shape = Shape { roll_off_m: Some(1e-3 / roll_off), ..Shape::default() };
+        let spectrum = Spectrum {
+            length_m: 1e-3,
+            rms_height_m: 5e-6,
+            hurst,
+            magnification: 32,
+            normalization: Normalization::Sample,
+            amplitudes: Amplitudes::Fixed,
+            shape,
+        };
+        // Sixteen points per shortest wavelength, and cut-offs of 4, 8 and 16 points.
+        let heights = synthesize(&spectrum, &realization_seed(11, 0), 512).heights_m;
+        for points in [4.0, 8.0, 16.0] {
+            let treatment = Treatment {
+                periodic,
+                detrend: if periodic { Detrend::Mean } else { Detrend::Plane },
+                points_per_shortest_wavelength: points,
+                ..PLAIN
+            };
+            let fit = prepare(heights.clone(), [1e-3 / 512.0; 2], &treatment).unwrap().fit.unwrap();
+            // Three octaves of power law or fewer: the roll-off and H are known to a tenth.
+            assert!((fit.hurst - hurst).abs() < 0.1, "{points}: {fit:?}");
+            assert!(fit.rolls_off, "{points}: {fit:?}");
+            assert!((fit.roll_off_1_m / (roll_off * TAU / 1e-3)).ln().abs() < 0.1, "{points}: {fit:?}");
+            let end = fit.short_cut.unwrap().wavenumber_1_m;
+            assert!((end / (32.0 * TAU / 1e-3)).ln().abs() < 0.1, "{points}: {fit:?}");
+        }
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use hysteron::model::{Amplitudes, Normalization};
 use hysteron::physics::surface::periodogram::periodogram;
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use ndarray::Array2;
@@ -18,6 +19,7 @@ fn law_the_periodogram_of_a_synthetic_surface_is_the_spectrum_that_it_was_made_f
             magnification: 40,
             normalization: Normalization::Spectrum,
             amplitudes: Amplitudes::Fixed,
+            shape: Shape::default(),
         };
         let surface = synthesize(&spectrum, &realization_seed(7, 1), n);
         let found = periodogram(surface.heights_m.view(), spectrum.length_m).unwrap();

@@ -7,6 +7,7 @@ use hysteron::physics::jkr::Asperity;
 use hysteron::physics::surface::SquareMap;
 use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::summits::{Summit, find_summits};
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
@@ -242,6 +243,7 @@ fn val_asperities_of_a_part_are_those_of_the_whole() {
         magnification: 32,
         normalization: Normalization::Sample,
         amplitudes: Amplitudes::Fixed,
+        shape: Shape::default(),
     };
     let whole = synthesize(&spectrum, &realization_seed(3, 0), 256).heights_m;
     let known = find_summits(whole.view(), 256.0, 8.0).unwrap().list;

@@ -134,7 +134,7 @@ fn law_energies_of_flattening_scale() {
     // J/m² is force over length: with lengths λ and forces φ times greater the energy per area is φ/λ times greater.
     for (length, force) in [(3.7, 0.013), (2.1e-4, 5e3)] {
         let spectrum = paper_spectrum(0.8, 32);
-        let scaled = Spectrum { length_m: length * LENGTH, rms_height_m: length * RMS, ..spectrum };
+        let scaled = Spectrum { length_m: length * LENGTH, rms_height_m: length * RMS, ..spectrum.clone() };
         let modulus = MODULUS * force / (length * length);
         let seed = realization_seed(5, 0);
         let pairs = [

@@ -43,6 +43,8 @@ mod schema;
 mod snapshots;
 mod spec;
 #[cfg(feature = "stats")]
+mod spectrum;
+#[cfg(feature = "stats")]
 mod stats;
 #[cfg(feature = "stats")]
 mod steps;

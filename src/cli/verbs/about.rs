@@ -9,10 +9,19 @@ use clap::CommandFactory;
 use clap_complete::Shell;
 use std::path::{Path, PathBuf};
 
-/// Prints a template, or the list of them.
+/// Prints a template, or the list of them. A file that the template names is written into the working
+/// directory, unless there is one of this name.
 pub(super) fn init(template: Template, list: bool) -> Result<u8, Fault> {
     let line = |(_, name, purpose): &(Template, &str, &str)| format!("{name:12} {purpose}\n");
     let text = if list { Template::ALL.iter().map(line).collect() } else { template.text().to_owned() };
+    if let Some((name, content)) = template.example().filter(|_| !list) {
+        if Path::new(name).exists() {
+            eprintln!("{name} exists and was not replaced");
+        } else {
+            written("write the example", &[(PathBuf::from(name), content.as_bytes().to_vec())])?;
+            eprintln!("Written: {name}");
+        }
+    }
     say(&text)?;
     Ok(0)
 }

@@ -12,6 +12,7 @@ mod measured;
 mod outputs;
 mod place;
 mod show;
+mod spectra;
 mod submit;
 mod survey;
 mod verdicts;

@@ -7,9 +7,9 @@ use crate::campaign::{
     Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, SurfaceUnit, Unit,
 };
 use crate::cli::FolderArguments;
-use crate::model::SurfaceSource;
+use crate::model::{GeneratedSurface, SurfaceSource};
 use crate::schema::{self, Table};
-use crate::spec::{CaseParams, GENERATED, MEASURED};
+use crate::spec::{CaseParams, GENERATED, MEASURED, REPLACED, WHERE_USED};
 use crate::stats::{significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
 use crate::text::{shell_path, shown, visible, wrapped};
@@ -175,10 +175,20 @@ fn parameters(params: &CaseParams) -> Map<String, Value> {
     all
 }
 
-/// Removes the keys of a measured surface from those of a generated one, and the other way round.
+/// Removes the keys of a measured surface from those of a generated one, and the other way round. Keys that
+/// are
+/// used by few surfaces remain where they are not at their default.
 fn keep_own(surface: &SurfaceSource, all: &mut Map<String, Value>) {
     let others: &[&str] = surface.generated().map_or(&GENERATED, |_| &MEASURED);
-    all.retain(|key, _| !others.iter().any(|name| key.strip_prefix("surface.") == Some(*name)));
+    let is_tabulated = surface.generated().is_some_and(GeneratedSurface::is_tabulated);
+    let default = json!(CaseParams::default());
+    all.retain(|key, value| {
+        let Some(name) = key.strip_prefix("surface.") else { return true };
+        let is_unused = WHERE_USED.contains(&name) && default["surface"][name] == *value;
+        // The rms height of a table is that of its band.
+        let is_replaced = is_tabulated && name != "rms_height_m" && REPLACED.contains(&name);
+        !(others.contains(&name) || is_unused || is_replaced)
+    });
 }
 
 fn flatten(table: &str, values: &Value, all: &mut Map<String, Value>) {

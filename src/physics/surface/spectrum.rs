@@ -1,23 +1,27 @@
 //! Power spectral density of a self-affine surface (Eq 10) and its moments.
 
+use super::pieces::Pieces;
+use super::shape::Shape;
 use crate::model::{Amplitudes, Normalization};
 use std::f64::consts::PI;
 
 /// Parameters of a synthetic surface, except its seed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
     /// Side of the periodic square L \[m\].
     pub length_m: f64,
     /// Rms height \[m\] of the realisation or of the spectrum, as selected by `normalization`.
     pub rms_height_m: f64,
-    /// Hurst exponent H, `0 < H ≤ 1`.
+    /// Hurst exponent H, `0 < H ≤ 1`. A tabulated spectrum does not read it.
     pub hurst: f64,
-    /// Magnification ζ = q1/qL.
+    /// Magnification ζ = q1/qL: the side L over the shortest wavelength.
     pub magnification: u32,
-    /// Quantity that `rms_height_m` refers to.
+    /// Quantity that `rms_height_m` refers to. A tabulated spectrum has its own.
     pub normalization: Normalization,
     /// Fixed or Rayleigh-distributed moduli.
     pub amplitudes: Amplitudes,
+    /// Roll-off, longest wavelength, anisotropy, or a table. The default is Eq 10.
+    pub shape: Shape,
 }
 
 impl Spectrum {
@@ -27,32 +31,81 @@ impl Spectrum {
         2.0 * PI / self.length_m
     }
 
-    /// Prefactor `C0 = h_rms² H / (π qL² (1 − ζ^(−2H)))` \[m⁴\].
-    ///
-    /// The spectrum's integral over d²q is `h_rms²`.
+    /// Wavenumbers of the band \[1/m\]: `2π/λ_long` (included) and `q1 = ζ qL` (excluded).
     #[must_use]
-    pub fn prefactor(&self) -> f64 {
-        let zeta = f64::from(self.magnification);
+    pub fn band_1_m(&self) -> [f64; 2] {
         let ql = self.lowest_wavenumber();
-        self.rms_height_m.powi(2) * self.hurst / (PI * ql * ql * (1.0 - zeta.powf(-2.0 * self.hurst)))
+        let longest = self.shape.longest_wavelength_m.map_or(ql, |longest| 2.0 * PI / longest);
+        [longest.max(ql), f64::from(self.magnification) * ql]
     }
 
-    /// Density `C(q) = C0 (q/qL)^(−2(H+1))` \[m⁴\] for `qL ≤ q < ζ qL`, else 0. Eq 10.
+    /// Prefactor C0 of the power law `C0 (q/qL)^(−2(H+1))` \[m⁴\].
     ///
-    /// The argument is the squared mode number `k² = (q/qL)²`; in integers the band edges are exact.
-    /// The band is half open: it includes the shell `q = qL` and excludes `q = q1`.
+    /// The spectrum's integral over d²q is `h_rms²`. Without roll-off, from L to L/ζ,
+    /// `C0 = h_rms² H / (π qL² (1 − ζ^(−2H)))`. A tabulated spectrum is used as it is: 1.
+    #[must_use]
+    pub fn prefactor(&self) -> f64 {
+        if self.shape.table.is_some() {
+            return 1.0;
+        }
+        let ql = self.lowest_wavenumber();
+        if self.shape.is_plain() {
+            let zeta = f64::from(self.magnification);
+            return self.rms_height_m.powi(2) * self.hurst
+                / (PI * ql * ql * (1.0 - zeta.powf(-2.0 * self.hurst)));
+        }
+        let whole = self.shape.integral(&self.shape.pieces(self.hurst, ql), 0.0, self.band_1_m());
+        self.rms_height_m.powi(2) / whole
+    }
+
+    /// Density `C(q)` \[m⁴\] of the mode (k, 0), for an isotropic spectrum of all modes with the squared mode
+    /// number `k² = (q/qL)²`. Eq 10: `C0 (q/qL)^(−2(H+1))` for `qL ≤ q < ζ qL`, else 0.
+    ///
+    /// In integers the band edges are exact. The band is half open: it includes the shell `q = qL` and
+    /// excludes `q = q1`.
     #[must_use]
     pub fn density(&self, mode_squared: u64) -> f64 {
-        let zeta = u64::from(self.magnification);
-        if mode_squared < 1 || mode_squared >= zeta * zeta {
+        let density = Density::of(self);
+        density.isotropic(mode_squared, || (mode_squared as f64).sqrt() * self.lowest_wavenumber())
+    }
+
+    /// Density `C(q)` \[m⁴\] of the mode with the numbers `q/qL = (kx, ky)`.
+    #[must_use]
+    pub fn mode_density(&self, kx: i64, ky: i64) -> f64 {
+        Density::of(self).at(kx, ky)
+    }
+
+    /// `∫ q^p C(q) d²q` over the wavevectors of the band with `low ≤ |q| < high` \[m^(2−p)\].
+    #[must_use]
+    pub fn integral(&self, p: f64, low: f64, high: f64) -> f64 {
+        let [longest, shortest] = self.band_1_m();
+        let pieces = self.shape.pieces(self.hurst, self.lowest_wavenumber());
+        self.prefactor() * self.shape.integral(&pieces, p, [low.max(longest), high.min(shortest)])
+    }
+
+    /// Flattening of the wavelengths of a table below the shortest one, `¼ ∫ q C(q) d²q` over `|q| ≥ q1`
+    /// \[m\].
+    ///
+    /// Times E* it is their elastic energy per area. A power law has no wavelengths below its shortest: 0.
+    #[must_use]
+    pub fn left_out_m(&self) -> f64 {
+        if self.shape.table.is_none() {
             return 0.0;
         }
-        self.prefactor() * (mode_squared as f64).powf(-(self.hurst + 1.0))
+        let pieces = self.shape.pieces(self.hurst, self.lowest_wavenumber());
+        0.25 * self.shape.integral(&pieces, 1.0, [self.band_1_m()[1], f64::INFINITY])
     }
 
     /// Moments of the continuous spectrum: `m0 = 2π∫qC dq`, `m2 = π∫q³C dq`, `m4 = (3π/4)∫q⁵C dq`.
+    ///
+    /// Those of an anisotropic spectrum have the same rms height, gradient and Laplacian:
+    /// `m0 = ∫C d²q`, `m2 = ½∫q²C d²q`, `m4 = ⅜∫q⁴C d²q`.
     #[must_use]
     pub fn moments(&self) -> Moments {
+        if !self.shape.is_plain() {
+            let [m0, slope, laplacian] = [0.0, 2.0, 4.0].map(|p| self.integral(p, 0.0, f64::INFINITY));
+            return Moments { m0_m2: m0, m2: 0.5 * slope, m4_1_m2: 0.375 * laplacian };
+        }
         let zeta = f64::from(self.magnification);
         let ql = self.lowest_wavenumber();
         // ∫ q^p (q/qL)^(−2H−2) dq over the band, in units of qL^(p+1).
@@ -65,6 +118,56 @@ impl Spectrum {
             m0_m2: 2.0 * PI * c0 * ql.powi(2) * band(1.0),
             m2: PI * c0 * ql.powi(4) * band(3.0),
             m4_1_m2: 0.75 * PI * c0 * ql.powi(6) * band(5.0),
+        }
+    }
+}
+
+/// Density of a spectrum at all modes, with the parts that they share.
+pub(crate) struct Density<'a> {
+    spectrum: &'a Spectrum,
+    prefactor: f64,
+    lowest: f64,
+    /// Smallest squared mode number of the band.
+    first: f64,
+    /// Power laws of a spectrum that is not plain.
+    pieces: Option<Pieces>,
+}
+
+/// Relative error of the first squared mode number, so that a shell at the longest wavelength is in the band.
+const ROUNDING: f64 = 1e-12;
+
+impl<'a> Density<'a> {
+    pub(crate) fn of(spectrum: &'a Spectrum) -> Self {
+        let lowest = spectrum.lowest_wavenumber();
+        let shape = &spectrum.shape;
+        let first = (spectrum.band_1_m()[0] / lowest).powi(2) * (1.0 - ROUNDING);
+        let pieces = (!shape.is_plain()).then(|| shape.pieces(spectrum.hurst, lowest));
+        Self { spectrum, prefactor: spectrum.prefactor(), lowest, first, pieces }
+    }
+
+    /// Lowest wavenumber \[1/m\].
+    pub(crate) fn lowest(&self) -> f64 {
+        self.lowest
+    }
+
+    /// Density of the mode (kx, ky) \[m⁴\].
+    pub(crate) fn at(&self, kx: i64, ky: i64) -> f64 {
+        let mode_squared = kx.unsigned_abs().pow(2) + ky.unsigned_abs().pow(2);
+        self.isotropic(mode_squared, || {
+            self.lowest * self.spectrum.shape.stretched([kx as f64, ky as f64]).sqrt()
+        })
+    }
+
+    /// Density of a mode in the band, with the wavenumber of the isotropic spectrum.
+    fn isotropic(&self, mode_squared: u64, wavenumber: impl Fn() -> f64) -> f64 {
+        let zeta = u64::from(self.spectrum.magnification);
+        if mode_squared < 1 || mode_squared >= zeta * zeta {
+            return 0.0;
+        }
+        match &self.pieces {
+            None => self.prefactor * (mode_squared as f64).powf(-(self.spectrum.hurst + 1.0)),
+            Some(_) if (mode_squared as f64) < self.first => 0.0,
+            Some(pieces) => self.prefactor * pieces.at(wavenumber()),
         }
     }
 }
@@ -95,6 +198,7 @@ impl MomentSums {
     pub(crate) fn scale(&self, spectrum: &Spectrum) -> f64 {
         let cell = spectrum.lowest_wavenumber().powi(2);
         match spectrum.normalization {
+            _ if spectrum.shape.table.is_some() => 1.0,
             Normalization::Spectrum => 1.0,
             Normalization::Sample => spectrum.rms_height_m / (self.0[0] * cell).sqrt(),
         }

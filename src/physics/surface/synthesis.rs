@@ -4,7 +4,7 @@
 //! A finer grid therefore samples the same continuous surface.
 //! Another magnification or Hurst exponent keeps the phases of all common modes.
 
-use super::spectrum::{MomentSums, Moments, Spectrum};
+use super::spectrum::{Density, MomentSums, Moments, Spectrum};
 use crate::model::Amplitudes;
 use ndarray::Array2;
 use rand::{Rng, SeedableRng};
@@ -59,19 +59,20 @@ impl Phases {
 }
 
 /// Complex amplitude of mode (kx, ky) before normalisation, for `ky > 0`, or `ky = 0` and `kx > 0`.
-fn mode(spectrum: &Spectrum, phases: &mut Phases, kx: i64, ky: u64) -> (Complex64, u64, f64) {
+fn mode(
+    density: &Density<'_>,
+    amplitudes: Amplitudes,
+    phases: &mut Phases,
+    (kx, ky): (i64, u64),
+) -> (Complex64, u64, f64) {
     let mode_squared = kx.unsigned_abs().pow(2) + ky * ky;
-    let mut power = spectrum.density(mode_squared);
+    let mut power = density.at(kx, ky as i64);
     if power > 0.0 {
         let (phase, exponential) = phases.draw(ky);
-        if spectrum.amplitudes == Amplitudes::Gaussian {
+        if amplitudes == Amplitudes::Gaussian {
             power *= exponential;
         }
-        return (
-            Complex64::from_polar(power.sqrt() * spectrum.lowest_wavenumber(), phase),
-            mode_squared,
-            power,
-        );
+        return (Complex64::from_polar(power.sqrt() * density.lowest(), phase), mode_squared, power);
     }
     (Complex64::ZERO, mode_squared, 0.0)
 }
@@ -137,12 +138,13 @@ pub fn mode_sums<const N: usize>(
     weights: impl Fn(u64) -> [f64; N],
 ) -> [f64; N] {
     let reach = i64::from(spectrum.magnification) - 1;
+    let density = Density::of(spectrum);
     let mut moments = MomentSums::default();
     let mut totals = [0.0; N];
     for kx in -reach..=reach {
         let mut phases = Phases::of_row(seed, kx);
         for ky in u64::from(kx <= 0)..=reach.unsigned_abs() {
-            let (_, mode_squared, power) = mode(spectrum, &mut phases, kx, ky);
+            let (_, mode_squared, power) = mode(&density, spectrum.amplitudes, &mut phases, (kx, ky));
             // The mode and its conjugate at −k.
             moments.add(mode_squared, 2.0 * power);
             for (total, weight) in totals.iter_mut().zip(weights(mode_squared)) {
@@ -158,6 +160,7 @@ pub fn mode_sums<const N: usize>(
 fn draw_columns(spectrum: &Spectrum, seed: &[u8; 32], n: usize, zeta: usize) -> (Vec<Complex64>, MomentSums) {
     let mut columns = vec![Complex64::ZERO; n * zeta];
     let reach = zeta as i64 - 1;
+    let density = Density::of(spectrum);
     // Rows are computed in parallel and added in order, so that the sums are independent of the threads.
     let rows: Vec<(Vec<Complex64>, MomentSums)> = (-reach..=reach)
         .into_par_iter()
@@ -167,7 +170,8 @@ fn draw_columns(spectrum: &Spectrum, seed: &[u8; 32], n: usize, zeta: usize) -> 
             let first = u64::from(kx <= 0);
             let mut row = vec![Complex64::ZERO; zeta];
             for ky in first..zeta as u64 {
-                let (amplitude, mode_squared, power) = mode(spectrum, &mut phases, kx, ky);
+                let (amplitude, mode_squared, power) =
+                    mode(&density, spectrum.amplitudes, &mut phases, (kx, ky));
                 row[ky as usize] = amplitude;
                 // The mode and its conjugate at −k.
                 sums.add(mode_squared, 2.0 * power);

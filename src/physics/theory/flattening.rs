@@ -49,9 +49,16 @@ impl Flattening {
 /// Flattening energies of the continuous spectrum (Eq 10), with E* \[Pa\].
 ///
 /// `(E*/4) ∫ q C d²q = (π/2) E* C0 qL³ ∫ x^(−2H) dx` with `x = q/qL`, from 1 or from ζ/2 to ζ.
-/// At `H = 1/2` the integral is a logarithm.
+/// At `H = 1/2` the integral is a logarithm. A spectrum with another shape has its integral over the
+/// wavevectors
+/// of its band.
 #[must_use]
 pub fn flattening(spectrum: &Spectrum, contact_modulus_pa: f64) -> Flattening {
+    if !spectrum.shape.is_plain() {
+        let shortest = spectrum.band_1_m()[1];
+        let beyond = |low: f64| 0.25 * contact_modulus_pa * spectrum.integral(1.0, low, shortest);
+        return Flattening { whole_j_m2: beyond(0.0), octave_j_m2: beyond(0.5 * shortest) };
+    }
     let zeta = f64::from(spectrum.magnification);
     let prefactor =
         0.5 * PI * contact_modulus_pa * spectrum.prefactor() * spectrum.lowest_wavenumber().powi(3);

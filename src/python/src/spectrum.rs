@@ -4,6 +4,7 @@
 use crate::columns::{Column, Values, allowed, each, each_many, each_slow, positive};
 use hysteron_physics::PhysicsError;
 use hysteron_physics::model::{Amplitudes, Normalization};
+use hysteron_physics::surface::shape::Shape;
 use hysteron_physics::surface::spectrum::{Moments, Spectrum};
 use hysteron_physics::theory::flattening::{Flattening, flattening as energies};
 use pyo3::prelude::*;
@@ -35,6 +36,7 @@ fn spectrum(
         )? as u32,
         normalization,
         amplitudes: Amplitudes::Fixed,
+        shape: Shape::default(),
     })
 }
 

@@ -3,6 +3,7 @@
 use super::super::StageError;
 use super::super::estimates::{finite, ratio_columns, read_surface_estimates, target};
 use super::super::identity::Identity;
+use super::super::surface::scale;
 use super::{Computed, CycleTask};
 use crate::physics::EventKind;
 use crate::physics::cycle::soundness::LoopEnergy;
@@ -16,7 +17,8 @@ use std::iter::repeat_n;
 pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, StageError> {
     let (campaign, params) = (task.campaign, task.params());
     let surface = read_surface_estimates(&campaign.estimates_path(&campaign.surfaces[task.unit.surface]))?;
-    let (target, material) = (target(params), &params.material);
+    let scale = scale(campaign, &campaign.surfaces[task.unit.surface])?;
+    let (target, material) = (target(params), &scale.material(&params.material));
     let all =
         CycleEstimates::of(&surface, target.as_ref(), &computed.summits, material, &computed.adhesionless)?;
     let (loads, nominal_m2) = (&params.cycle.max_load, surface.nominal_area_m2());

@@ -2,6 +2,7 @@
 
 use crate::bench::{Bench, code, paths, stderr, stdout};
 use hysteron::model::{Amplitudes, Normalization};
+use hysteron::physics::surface::shape::Shape;
 use hysteron::physics::surface::spectrum::Spectrum;
 use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use hysteron::schema;
@@ -28,6 +29,7 @@ pub fn cut(magnification: u32, rows: usize) -> Array2<f64> {
         magnification,
         normalization: Normalization::Sample,
         amplitudes: Amplitudes::Fixed,
+        shape: Shape::default(),
     };
     let surface = synthesize(&spectrum, &realization_seed(5, 0), 8 * magnification as usize);
     surface.heights_m.slice(s![..rows, ..rows + 4]).mapv(|h| 1e9 * h)

@@ -2,7 +2,7 @@
 
 use hysteron::model::{
     Amplitudes, AttractionKind, Boundary, Choice, Coalescence, Interaction, JumpIn, KeptContacts, Method, Normalization, Nucleation,
-    Opening, Slip,
+    Opening, Slip, SpectrumConvention, SpectrumKind,
 };
 use hysteron::spec::Spec;
 
@@ -19,6 +19,9 @@ fn val_bounds_are_where_the_message_says() {
         ("surface", "magnification", "1", "2", "4096", "4097", ""),
         ("surface", "magnification", "1", "2", "8192", "16385", "points_per_shortest_wavelength = 4"),
         ("surface", "points_per_shortest_wavelength", "3", "4", "64", "65", ""),
+        ("surface", "longest_wavelength_m", "-1e-300", "0", "1", "1.0000001", "length_m = 1"),
+        ("surface", "aspect_ratio", "0.999", "1", "100", "100.0001", ""),
+        ("surface", "angle_deg", "-180.001", "-180", "180", "180.001", ""),
         ("material", "contact_modulus_pa", "0.999", "1", "1e13", "1.0001e13", ""),
         ("material", "work_of_adhesion_j_m2", "-1e-300", "0", "1e3", "1000.001", ""),
         ("material", "interaction_range_m", "9.99e-13", "1e-12", "1e-5", "1.001e-5", ""),
@@ -54,6 +57,8 @@ fn all_words() -> Vec<(&'static str, &'static str)> {
     [
         words::<Normalization>("surface.normalization"),
         words::<Amplitudes>("surface.amplitudes"),
+        words::<SpectrumKind>("surface.spectrum_kind"),
+        words::<SpectrumConvention>("surface.spectrum_convention"),
         words::<Method>("model.method"),
         words::<Interaction>("model.interaction"),
         words::<Boundary>("model.boundary"),
@@ -73,7 +78,8 @@ fn law_every_word_is_taken() {
     for (key, word) in all_words() {
         let value = if key == "model.as_printed" { format!("[\"{word}\"]") } else { format!("\"{word}\"") };
         let method = if key.starts_with("boundary_elements.") { "model.method = \"boundary_elements\"\n" } else { "" };
-        let text = format!("name = \"x\"\n{method}{key} = {value}\n");
+        let file = if key.starts_with("surface.spectrum_") { "surface.spectrum = \"a.csv\"\n" } else { "" };
+        let text = format!("name = \"x\"\n{method}{file}{key} = {value}\n");
         let spec = Spec::parse(&text, "x.toml").unwrap_or_else(|errors| panic!("{errors}"));
         let json = serde_json::to_value(&spec.cases[0].params).unwrap();
         let found = json.pointer(&format!("/{}", key.replace('.', "/"))).unwrap();

@@ -32,6 +32,11 @@ fn header() -> SurfaceHeader {
             points_per_shortest_wavelength: 8.0,
             normalization: Normalization::Spectrum,
             amplitudes: Amplitudes::Gaussian,
+            longest_wavelength_m: Some(1e-4),
+            roll_off_m: Some(2e-5),
+            aspect_ratio: 2.5,
+            angle_deg: -30.0,
+            left_out_m: Some(1e-12),
         }),
         measured: None,
     }

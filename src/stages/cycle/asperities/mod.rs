@@ -37,7 +37,7 @@ struct AsperityCase<'a> {
 
 /// The error by which cycles on a measured surface fail; nothing for one whose asperities are not known.
 pub(super) fn refusal(params: &CaseParams, options: &AsperityOptions, known: &Known) -> Option<StageError> {
-    let scale = Scale { length_m: known.header.length_m, rms_height_m: known.header.rms_height_m };
+    let scale = Scale::of(&known.header);
     checked(AsperityCase { params, options }, scale, &known.found()?.found.list).err()
 }
 
@@ -59,6 +59,8 @@ fn method(
     };
     let options = Options {
         rules,
+        probe: params.probe,
+        machine: params.machine,
         approach_step: options.approach_step,
         contacts: params.cycle.contacts,
         ..Options::default()
@@ -67,7 +69,7 @@ fn method(
         summits,
         scale.length_m,
         scale.rms_height_m,
-        &params.material,
+        &scale.material(&params.material),
         max_loads,
         &options,
     )?)

@@ -29,12 +29,15 @@ impl Trial {
     ) -> Option<String> {
         let (params, place) = (&unit.case.params, cycle.surface);
         let (options, surface) = (params.asperities()?, params.surface.generated()?);
+        if !surface.has_spectrum() {
+            return None;
+        }
         let grid = surface.grid() as usize;
         let mut known = self.0.borrow_mut();
         if grid > LARGEST || (known.len() >= MOST && !known.contains_key(&place)) {
             return None;
         }
-        let scale = Scale { length_m: surface.length_m, rms_height_m: surface.rms_height_m };
+        let scale = Scale::of_generated(surface);
         let summits = known.entry(place).or_insert_with(|| {
             let seed = realization_seed(campaign.spec.seed, u64::from(campaign.surfaces[place].realization));
             let heights_m = synthesize(&surface.spectrum(), &seed, grid).heights_m;

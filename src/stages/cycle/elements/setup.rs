@@ -34,13 +34,14 @@ pub(super) fn setup(
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let summits = read_summits(&campaign.asperities_path(surface))?;
     let (length_m, wavelengths) = Square::of(params, &header).extent();
-    let rms_height_m = scale(campaign, surface)?.rms_height_m;
+    let scale = scale(campaign, surface)?;
+    let (rms_height_m, material) = (scale.rms_height_m, scale.material(&params.material));
     let lattice = checked_lattice(of, &header, rms_height_m)?;
     let attraction = match of.options.attraction {
-        Rule::Bonded { nucleation, opening } => bonded(&params.material, &summits, nucleation, opening)?,
+        Rule::Bonded { nucleation, opening } => bonded(&material, &summits, nucleation, opening)?,
         Rule::Range { range_m } => {
             let spacing_m = length_m / lattice.points as f64;
-            let automatic = || automatic_range(params.material.adhesion_length_m(), spacing_m);
+            let automatic = || automatic_range(material.adhesion_length_m(), spacing_m);
             Attraction::Range { range_m: range_m.unwrap_or_else(automatic) }
         }
     };
@@ -60,7 +61,7 @@ pub(super) fn setup(
     let (length_m, is_periodic) = (header.length_m, header.periodic);
     let map =
         HeightMap { heights_m: heights.view(), length_m, is_periodic, shortest_wavelength_m, rms_height_m };
-    let method = Elements::new(&map, &params.material, &params.cycle.max_load, &options)?;
+    let method = Elements::new(&map, &material, &params.cycle.max_load, &options)?;
     let method = method.with_summits(summits.iter().map(|summit| [summit.x_m, summit.y_m]));
     let by_spectrum =
         params.surface.generated().map_or(lattice, |surface| Lattice::of_generated(of, surface));
