@@ -19,7 +19,7 @@ use super::written::{Written, wrong_type};
 use super::{Case, Spec, SpecErrors, Value};
 use crate::formats::{Found, Refusal, recognize};
 use crate::keys::digest_of_file;
-use crate::model::{MeasuredSurface, SurfaceSource};
+use crate::model::{Experiment, MeasuredSurface, SurfaceSource};
 use crate::paths::whole;
 
 /// Reads the table `[files]`.
@@ -65,9 +65,11 @@ pub(super) fn files(
 pub(super) fn named(
     files: BTreeMap<String, (String, Range<usize>)>,
     cases: &[Case],
+    experiment: Option<&Experiment>,
     faults: &mut Faults<'_>,
 ) -> BTreeMap<String, String> {
-    let wanted: HashSet<&str> = measured(cases).map(|surface| surface.file.as_str()).collect();
+    let loops = experiment.into_iter().flat_map(|of| &of.loops).map(String::as_str);
+    let wanted: HashSet<&str> = measured(cases).map(|surface| surface.file.as_str()).chain(loops).collect();
     for (name, (_, span)) in files.iter().filter(|(name, _)| !wanted.contains(name.as_str())) {
         let message = format!("[files] has a checksum of \"{}\", which is not used by any case", shown(name));
         faults.add(
@@ -120,9 +122,53 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) ->
             }
         }
     }
+    loops(&mut spec, &known, folder, (text, &mut faults), &mut moved);
     rename(&mut spec, &moved);
     join_copies(&mut spec);
     faults.finish(Some(spec))
+}
+
+/// Checks the files of measured loops and takes their checksums. A loop of a resolved spec may be missing.
+fn loops(
+    spec: &mut Spec,
+    known: &BTreeMap<String, String>,
+    folder: &Path,
+    (text, faults): (&str, &mut Faults<'_>),
+    moved: &mut BTreeMap<String, String>,
+) {
+    let Some(Experiment { loops, options }) = spec.experiment.clone() else { return };
+    for name in &loops {
+        let read = |found: &String| {
+            let path = Path::new(found);
+            match super::experiment::fault(path, &options) {
+                Some((problem, help)) => Err(Refusal { problem, help }),
+                None => digest_of_file(path).map_err(|error| Refusal {
+                    problem: error.to_string(),
+                    help: "check the file".to_owned(),
+                }),
+            }
+        };
+        let checked = match known.get(name) {
+            Some(digest) => Ok((of_resolved(name, folder, digest), digest.clone())),
+            None => located(name, folder).and_then(|found| Ok((found.clone(), read(&found)?))),
+        };
+        match checked {
+            Ok((found, digest)) => {
+                if Path::new(name).is_absolute() {
+                    spec.absolute_files.insert(found.clone());
+                }
+                if found != *name {
+                    moved.insert(name.clone(), found.clone());
+                }
+                spec.files.insert(found, digest);
+            }
+            Err(Refusal { problem, help }) => {
+                let at = if faults.is_full() { 0 } else { text.find(name.as_str()).unwrap_or_default() };
+                let message = format!("the measured loop \"{name}\" cannot be read: {problem}");
+                faults.add(&(at..at + name.len().min(text.len() - at)), message, help);
+            }
+        }
+    }
 }
 
 /// Joins cases that differ only in the folder of a file with the same name and content.
@@ -155,7 +201,8 @@ pub(super) fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
     let swept = axes
         .flat_map(|axis| &mut axis.values)
         .filter_map(|value| if let Value::Text(name) = value { Some(name) } else { None });
-    for name in own.chain(swept) {
+    let loops = spec.experiment.iter_mut().flat_map(|of| &mut of.loops);
+    for name in own.chain(swept).chain(loops) {
         if let Some(found) = moved.get(name) {
             name.clone_from(found);
         }

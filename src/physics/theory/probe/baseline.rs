@@ -1,6 +1,7 @@
 //! Load of an instrument without contact, from the points before contact and after separation.
 
 use super::regression::{Normal, Residuals, solve, variance_along};
+use crate::model::Baseline;
 
 /// Fewest points without contact at one end of a loop.
 pub(super) const FEWEST: usize = 8;
@@ -12,19 +13,6 @@ const CONTACT: f64 = 6.0;
 const ROUNDING: f64 = 1e-9;
 /// Part of a branch in which the search for contact begins.
 const SEED: f64 = 0.1;
-
-/// Baseline that is subtracted from a measured load.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Baseline {
-    /// Offset, slope along the displacement and drift along the path, as many as the points without contact
-    /// determine.
-    #[default]
-    Line,
-    /// Offset alone.
-    Offset,
-    /// Nothing.
-    None,
-}
 
 /// Fitted baseline.
 pub(super) struct Fitted {

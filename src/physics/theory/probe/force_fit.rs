@@ -268,7 +268,14 @@ impl Probe {
             }
         }
         let origin = turn.0 - penetration(turn.1, modulus);
-        (way > 0.0).then_some(Model { radius, modulus, roots: [work.sqrt(); 2], origin, pinned_at: None, largest: f64::INFINITY })
+        (way > 0.0).then_some(Model {
+            radius,
+            modulus,
+            roots: [work.sqrt(); 2],
+            origin,
+            pinned_at: None,
+            largest: f64::INFINITY,
+        })
     }
 
     /// Parameters of the minimum with their errors.

@@ -17,8 +17,9 @@ use super::baseline::{self, Fitted};
 use super::force_fit::Path;
 use super::radius_fit::receding;
 use super::regression::variance_along;
-use super::{Baseline, Branch, Estimate, Probe, pull_off};
+use super::{Branch, Estimate, Probe, pull_off};
 use crate::PhysicsError;
+use crate::model::Baseline;
 use std::f64::consts::PI;
 
 /// Fewest points of a loop.
@@ -241,7 +242,7 @@ fn reversal(way: &[f64], load: &[f64]) -> Result<usize, PhysicsError> {
 }
 
 /// Range of the values.
-fn range(values: &[f64]) -> f64 {
+pub(super) fn range(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
         - values.iter().copied().fold(f64::INFINITY, f64::min)
 }

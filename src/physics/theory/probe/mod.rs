@@ -14,6 +14,7 @@
 mod baseline;
 mod force_fit;
 pub mod measured_loop;
+mod orientation;
 mod pull_off;
 mod radius_fit;
 mod regression;
@@ -22,8 +23,8 @@ use crate::PhysicsError;
 use crate::jkr::loop_loss_constant;
 use std::f64::consts::PI;
 
-pub use baseline::Baseline;
 pub use force_fit::{ForceFit, Path};
+pub use orientation::{Oriented, oriented};
 
 /// Estimate with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
