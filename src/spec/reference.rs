@@ -138,11 +138,8 @@ fn experiment() -> String {
     let numbers =
         [("probe_radius_m", RADIUS), ("contact_modulus_pa", MODULUS), ("machine_stiffness_n_m", STIFFNESS)];
     for (name, limits) in numbers {
-        section += &format!(
-            "| `experiment.{name}` | float | {} | {} | |\n",
-            limits.unit.trim(),
-            self::range(&limits)
-        );
+        section +=
+            &format!("| `experiment.{name}` | float | {} | {} | |\n", limits.unit.trim(), range(&limits));
         meanings += &(paragraph("- ", &format!("`{name}`: {}.", limits.note)) + "\n");
     }
     section + "\n" + &meanings

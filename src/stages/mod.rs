@@ -13,6 +13,7 @@ mod datapackage;
 mod done;
 mod error;
 mod estimates;
+mod experiment;
 mod explorer;
 mod explorer_maps;
 mod extract;
