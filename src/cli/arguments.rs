@@ -216,19 +216,19 @@ pub(super) struct LoopArguments {
     pub(super) is_loop: bool,
     /// Column of the force
     #[arg(long, value_name = "COLUMN")]
-    pub(super) force: Option<String>,
+    pub(super) force_column: Option<String>,
     /// Unit of the force, e.g. nN
     #[arg(long, value_name = "UNIT")]
     pub(super) force_unit: Option<String>,
     /// Column of the displacement or penetration
     #[arg(long, value_name = "COLUMN")]
-    pub(super) displacement: Option<String>,
+    pub(super) displacement_column: Option<String>,
     /// Unit of the displacement, e.g. um
     #[arg(long, value_name = "UNIT")]
     pub(super) displacement_unit: Option<String>,
     /// Column of the contact radius or contact area
     #[arg(long, value_name = "COLUMN")]
-    pub(super) radius: Option<String>,
+    pub(super) radius_column: Option<String>,
     /// Unit of the contact radius or area, e.g. um or um2
     #[arg(long, value_name = "UNIT")]
     pub(super) radius_unit: Option<String>,

@@ -214,8 +214,8 @@ impl Chosen {
             )
         };
         let force = match options.force.as_str() {
-            "" => first(&|role| role == Role::Force).ok_or_else(|| missing("force", "--force"))?,
-            name => called(name, "--force")?,
+            "" => first(&|role| role == Role::Force).ok_or_else(|| missing("force", "--force-column (force)"))?,
+            name => called(name, "--force-column (force)")?,
         };
         let ranked = || {
             let ranks = columns.iter().enumerate().filter_map(|(place, column)| match column.role()? {
@@ -228,12 +228,12 @@ impl Chosen {
             ranks.min_by_key(key).map(|(_, place)| place)
         };
         let displacement = match options.displacement.as_str() {
-            "" => ranked().ok_or_else(|| missing("displacement", "--displacement"))?,
-            name => called(name, "--displacement")?,
+            "" => ranked().ok_or_else(|| missing("displacement", "--displacement-column (displacement)"))?,
+            name => called(name, "--displacement-column (displacement)")?,
         };
         let radius = match options.radius.as_str() {
             "" => first(&|role| role == Role::Radius || role == Role::Area),
-            name => Some(called(name, "--radius")?),
+            name => Some(called(name, "--radius-column (radius)")?),
         };
         Ok(Self { force, displacement, radius, time: first(&|role| role == Role::Time) })
     }

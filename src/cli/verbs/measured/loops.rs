@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// True if the file is a loop: by an option for loops, or by its heading.
 pub(super) fn is_meant(asked: &ImportArguments) -> bool {
     let of = &asked.of_loop;
-    of.is_loop || of.force.is_some() || of.displacement.is_some() || is_force_curve(&asked.file)
+    of.is_loop || of.force_column.is_some() || of.displacement_column.is_some() || is_force_curve(&asked.file)
 }
 
 /// Evaluates a loop.
@@ -79,11 +79,11 @@ fn options(asked: &ImportArguments) -> Result<LoopOptions, Fault> {
     }
     let word = |text: &Option<String>| text.clone().unwrap_or_default();
     Ok(LoopOptions {
-        force: word(&of.force),
+        force: word(&of.force_column),
         force_unit: word(&of.force_unit),
-        displacement: word(&of.displacement),
+        displacement: word(&of.displacement_column),
         displacement_unit: word(&of.displacement_unit),
-        radius: word(&of.radius),
+        radius: word(&of.radius_column),
         radius_unit: word(&of.radius_unit),
         compression: of.compression.as_deref().and_then(Compression::from_word).unwrap_or(Compression::Auto),
         baseline: of.baseline.as_deref().and_then(Baseline::from_word).unwrap_or(Baseline::Line),
@@ -171,7 +171,7 @@ fn conditions(found: &MeasuredLoop) -> Vec<(&'static str, String)> {
     if let Some(radius) = found.options.probe_radius_m {
         let modulus = found.options.contact_modulus_pa;
         let given = modulus.map_or_else(|| "E* fitted".to_owned(), |modulus| format!("E* = {modulus:e} Pa"));
-        lines.push(("probe", format!("R = {radius:e} m, {given}")));
+        lines.push(("probe", format!("R = {} m, {given}", significant(radius, 4))));
     }
     lines.push(("F_max", format!("{} N", significant(of.max_load_n, 4))));
     lines
