@@ -57,8 +57,7 @@ struct Path {
 
 impl Path {
     fn new(work: f64) -> Result<Self, PhysicsError> {
-        let material =
-            Material { contact_modulus_pa: MODULUS_PA, work_of_adhesion_j_m2: work, interaction_range_m: 1e-9 };
+        let material = Material { contact_modulus_pa: MODULUS_PA, work_of_adhesion_j_m2: work, interaction_range_m: 1e-9 };
         let sphere = Asperity::new(RADIUS_M, &material)?;
         let way = |a: f64| sphere.penetration(a) + sphere.load(a) / STIFFNESS_N_M;
         // The displacement has one minimum above the jump-off radius of a stiff machine.

@@ -214,7 +214,8 @@ impl Chosen {
             )
         };
         let force = match options.force.as_str() {
-            "" => first(&|role| role == Role::Force).ok_or_else(|| missing("force", "--force-column (force)"))?,
+            "" => first(&|role| role == Role::Force)
+                .ok_or_else(|| missing("force", "--force-column (force)"))?,
             name => called(name, "--force-column (force)")?,
         };
         let ranked = || {
