@@ -13,6 +13,7 @@ macro_rules! pages {
 pages!(
     tutorial,
     howto_scan,
+    howto_loop,
     howto_sweep,
     howto_cluster,
     howto_data,

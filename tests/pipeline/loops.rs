@@ -162,7 +162,7 @@ fn reg_bad_loops_are_refused_with_help() {
         ("one branch", lines[..62].join("\n"), &[], "no load reversal"),
         ("open", lines[..70].join("\n"), &[], "does not close"),
         ("few points", lines[..20].join("\n"), &[], "19 points"),
-        ("zigzag", zigzag, &[], "goes back"),
+        ("zigzag", zigzag, &["--compression", "positive"], "goes back"),
         ("no numbers", "force_nN,displacement_um\n".to_owned(), &[], "no line of numbers"),
         ("stiffness", good.clone(), &["--machine-stiffness", "-1"], "--machine-stiffness"),
         ("radius", good.clone(), &["--probe-radius", "20 miles"], "--probe-radius"),
@@ -218,7 +218,7 @@ fn e2e_measured_and_simulated_loops_are_beside_each_other() {
     // Read back, the resolved spec is the same; and nothing is computed twice.
     let resolved = fs::read_to_string(at("out/campaign.toml")).unwrap();
     assert!(resolved.contains("loops = [\"../probe_loop.csv\"]") && Spec::parse(&resolved, "x").is_ok(), "{resolved}");
-    assert!(stdout(&run()).contains("1 done before"));
+    assert!(stderr(&run()).contains("1 done before"));
     // Another content is another key.
     let text = fs::read_to_string(example()).unwrap();
     fs::write(at("probe_loop.csv"), text.replacen("0.00,-2.0000,20.0,", "0.00,-2.0000,20.1,", 1)).unwrap();
