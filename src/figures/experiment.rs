@@ -1,4 +1,4 @@
-//! Measured loops beside a simulated one, in newtons and metres.
+//! Measured loops and a simulated one, in newtons and metres.
 
 use super::FigureError;
 use super::axis::Axis;
@@ -58,8 +58,9 @@ pub fn measured_loops(measured: &Frame, simulated: Option<&Simulated<'_>>) -> Re
     let y = Axis::holding("F [N]", all().map(|point| point.1), true).with_headroom(0.1);
     let beside = simulated.map_or_else(String::new, |of| format!(" Simulated: {}.", of.parameters));
     let caption = format!(
-        "Normal force F against penetration δ of measured loops, baseline subtracted; loading dashed, unloading \
-         solid. δ = 0 at the first contact on approach; for the simulated loop, where the highest point touches. At \
+        "Normal force F against penetration δ of measured loops, baseline subtracted; loading dashed, \
+         unloading solid. δ = 0 at the first contact on approach; for the simulated loop, where the highest \
+         point touches. At \
          most {MOST_POINTS} points of each branch are drawn.{beside}{}",
         captions::data(NAME)
     );

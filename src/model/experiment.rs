@@ -57,7 +57,7 @@ impl Default for LoopOptions {
 pub struct Experiment {
     /// Files, each with one loop.
     pub loops: Vec<String>,
-    /// How they are read.
+    /// Reading and evaluation of the files.
     #[serde(flatten)]
     pub options: LoopOptions,
 }

@@ -1,4 +1,4 @@
-//! Part of the report: measured loops beside the simulated ones.
+//! Part of the report: measured loops and the simulated ones.
 
 use super::cases::Cases;
 use super::layout::{Numbers, grid, heading, prose, wide};
@@ -17,12 +17,14 @@ pub struct MeasuredLoops {
     pub panel: Panel,
 }
 
-const NOTE: &str = "Measured: ± half-width of the 95 % confidence interval. Simulated: mean over realizations of the \
-    nominal square. F_{po}: pull-off force. Θ: dissipated energy. E_{c}, E_{o}: energies of closing and of opening. \
-    w: apparent works of adhesion, from F_{po}, from Θ, and from JKR fits of approach and retraction. E*: apparent \
-    modulus. Data: `measured_loops.parquet` and `measured_steps.parquet` in `statistics`.";
+const NOTE: &str = "Measured: ± half-width of the 95 % confidence interval. Simulated: mean over \
+    realizations of the nominal square. F_{po}: pull-off force. Θ: dissipated energy. E_{c}, E_{o}: \
+    energies of closing and of opening. \
+    w: apparent works of adhesion, from F_{po}, from Θ, and from JKR fits of approach and retraction. E*: \
+    apparent modulus. Data: `measured_loops.parquet` and `measured_steps.parquet` in `statistics`.";
 
-/// Heading and column of the measured loops. A column of this name of the table `realizations` has the simulated value.
+/// Heading and column of the measured loops. A column of this name of the table `realizations` has the
+/// simulated value.
 const COLUMNS: [(&str, &str); 9] = [
     ("F_{po} [N]", "pull_off_load_n"),
     ("Θ [J]", "loss_j"),
@@ -63,7 +65,8 @@ pub(super) fn section(
         let mut cells = Vec::new();
         for (_, column) in COLUMNS {
             let value = of.loops.f64_or_null(column)?.get(row).copied().flatten();
-            let width = of.loops.f64_or_null(&format!("{column}_ci95"))?.get(row).copied().flatten();
+            let limit = of.loops.f64_or_null(&format!("{column}_ci95_high"))?.get(row).copied().flatten();
+            let width = limit.zip(value).map(|(limit, value)| limit - value);
             cells.push(html! {
                 (shown(value, Shown::Plain)) @if width.is_some() { " ± " (shown(width, Shown::Plain)) }
             });

@@ -2,15 +2,21 @@
 
 use super::{Column, Table, count, flag, index, join, real, text};
 
-/// A result of a measured loop, and the half-width of its 95 % interval.
+/// A result of a measured loop, and the limits of its 95 % interval.
 macro_rules! with_interval {
     ($name:literal, $unit:literal, $what:literal, $source:literal) => {
         &[
             real($name, $unit, $what).or_null().from($source),
             real(
-                concat!($name, "_ci95"),
+                concat!($name, "_ci95_low"),
                 $unit,
-                concat!("Half-width of the 95 % confidence interval (Student) of ", $name),
+                concat!("Lower limit of the 95 % confidence interval (Student) of ", $name),
+            )
+            .or_null(),
+            real(
+                concat!($name, "_ci95_high"),
+                $unit,
+                concat!("Upper limit of the 95 % confidence interval (Student) of ", $name),
             )
             .or_null(),
         ]
@@ -87,7 +93,7 @@ const RESULTS: &[&[Column]] = &[
     ),
 ];
 
-const RESULT_COLUMNS: [Column; 2 * RESULTS.len()] = join(RESULTS);
+const RESULT_COLUMNS: [Column; 3 * RESULTS.len()] = join(RESULTS);
 
 const DETAILS: &[Column] = &[
     text("fit", "Fitted curve: \"radius\" (load over contact radius) or \"load\" (load over penetration)")
@@ -144,8 +150,8 @@ pub static MEASURED_LOOPS: Table = Table {
     name: "measured_loops",
     version: 1,
     file: "statistics/measured_loops.parquet",
-    doc: "One row per measured loop of the table [experiment] of the spec. Columns with the name of one of the table \
-          realizations have the same meaning.",
+    doc: "One row per measured loop of the table [experiment] of the spec. Columns with the name of one of \
+        the table realizations have the same meaning.",
     columns: &LOOP_COLUMNS,
 };
 
@@ -154,8 +160,8 @@ pub static MEASURED_STEPS: Table = Table {
     name: "measured_steps",
     version: 1,
     file: "statistics/measured_steps.parquet",
-    doc: "One row per point of a measured loop. Columns with the name of one of the table steps have the same \
-          meaning; what was not measured is null.",
+    doc: "One row per point of a measured loop. Columns with the name of one of the table steps have the \
+        same meaning; what was not measured is null.",
     columns: &[
         SOURCE,
         index("step", "Number of the point along the loop, from 0"),

@@ -1,4 +1,4 @@
-//! `[experiment]`: measured loops beside the simulated ones.
+//! `[experiment]`: measured loops for comparison with the simulated ones.
 
 use std::path::Path;
 

@@ -170,7 +170,12 @@ fn number(limits: &Limits) -> Value {
 
 fn experiment() -> Value {
     use super::experiment::{LONGEST, MODULUS, MOST_LOOPS, RADIUS, STIFFNESS, WORDS};
-    let text = |meaning: &str| json!({ "type": "string", "pattern": PLAIN, "minLength": 1, "maxLength": LONGEST, "description": meaning });
+    let text = |meaning: &str| {
+        json!({
+            "type": "string", "pattern": PLAIN, "minLength": 1, "maxLength": LONGEST,
+            "description": meaning,
+        })
+    };
     let mut keys: BTreeMap<&str, Value> =
         super::experiment::MEANINGS.iter().map(|(name, _, meaning)| (*name, text(meaning))).collect();
     for (name, choice) in WORDS {
@@ -193,7 +198,7 @@ fn experiment() -> Value {
     );
     json!({
         "type": "object", "additionalProperties": false, "properties": keys, "required": ["loops"],
-        "description": "Measured loops beside the simulated ones.",
+        "description": "Measured loops for comparison with the simulated ones.",
     })
 }
 

@@ -120,19 +120,19 @@ fn top() -> String {
 /// The table of measured loops.
 fn experiment() -> String {
     use super::experiment::{MEANINGS, MODULUS, RADIUS, STIFFNESS, WORDS};
-    let mut section = "\n## `[experiment]`\n\nMeasured loops beside the simulated ones: \
-         [My loop beside the simulated one](howto_loop.md).\n\n| key | type | unit | range | default \
+    let mut section = "\n## `[experiment]`\n\nMeasured loops for comparison with the simulated ones: \
+         [My loop next to the simulated one](howto_loop.md).\n\n| key | type | unit | range | default \
          |\n|---|---|---|---|---|\n"
         .to_owned();
     let mut meanings = String::new();
     for (name, kind, meaning) in MEANINGS {
         let default = if name == "loops" { "required" } else { "" };
         section += &format!("| `experiment.{name}` | {kind} | | | {default} |\n");
-        meanings += &(paragraph("- ", &format!("`{name}`: {meaning}")) + "\n");
+        meanings += &(paragraph("- ", &format!("`experiment.{name}`: {meaning}")) + "\n");
     }
     for (name, words) in WORDS {
         section += &format!("| `experiment.{name}` | string | | | `\"{}\"` |\n", words[0].0);
-        meanings += &format!("- `{name}`:\n");
+        meanings += &format!("- `experiment.{name}`:\n");
         meanings.extend(words.iter().map(|(word, meaning)| entry(word, meaning)));
     }
     let numbers =
@@ -140,7 +140,7 @@ fn experiment() -> String {
     for (name, limits) in numbers {
         section +=
             &format!("| `experiment.{name}` | float | {} | {} | |\n", limits.unit.trim(), range(&limits));
-        meanings += &(paragraph("- ", &format!("`{name}`: {}.", limits.note)) + "\n");
+        meanings += &(paragraph("- ", &format!("`experiment.{name}`: {}.", limits.note)) + "\n");
     }
     section + "\n" + &meanings
 }

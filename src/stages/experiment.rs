@@ -1,4 +1,4 @@
-//! Measured loops of a spec for the report, beside a simulated loop.
+//! Measured loops of a spec for the report, with a simulated loop.
 
 use super::StageError;
 use super::single_cycle::{Chosen, choose, parameters};
@@ -10,8 +10,8 @@ use crate::schema;
 use crate::store::Frame;
 use crate::store::parquet::read_table;
 
-/// The tables of the measured loops with their figure; nothing without `[experiment]`. The simulated loop is that of
-/// the section of single cycles: by boundary elements, or else of the asperity model.
+/// The tables of the measured loops with their figure; nothing without `[experiment]`. The simulated loop is
+/// that of the section of single cycles: by boundary elements, or else of the asperity model.
 pub(super) fn beside(
     campaign: &Campaign,
     standings: &[Standing],

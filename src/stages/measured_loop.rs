@@ -3,8 +3,8 @@
 use super::StageError;
 use crate::keys::digest_of_file;
 use crate::model::{Choice as _, LoopOptions};
-use crate::physics::theory::probe::measured_loop::{Apparent, DRIFT, Evaluated, Measured, evaluate};
-use crate::physics::theory::probe::{Estimate, Oriented, Probe, oriented};
+use crate::physics::theory::probe::measured_loop::{DRIFT, Evaluated, Measured, evaluate};
+use crate::physics::theory::probe::{Apparent, Estimate, Oriented, Probe, oriented};
 use crate::schema::{MEASURED_LOOPS, MEASURED_STEPS};
 use crate::stats::t_quantile;
 use crate::store::Frame;
@@ -18,7 +18,7 @@ pub struct MeasuredLoop {
     pub source: String,
     /// BLAKE3 of the file.
     pub digest: String,
-    /// How it was read.
+    /// Options of its reading.
     pub options: LoopOptions,
     /// Columns of the file.
     pub curve: ForceCurve,
@@ -120,8 +120,8 @@ impl MeasuredLoop {
         let mut found = Vec::new();
         if of.closure.abs() > DRIFT {
             found.push(format!(
-                "drift: the load at the end differs by {:.1} % of its range from that at the start (limit {:.0} %); Θ \
-                 and F_po depend on the baseline",
+                "drift: the load at the end differs by {:.1} % of its range from that at the start (limit \
+                 {:.0} %); Θ and F_po depend on the baseline",
                 100.0 * of.closure,
                 100.0 * DRIFT
             ));
@@ -139,8 +139,8 @@ impl MeasuredLoop {
         }
         if self.apparent.is_some_and(|of| of.residual.is_some_and(|residual| residual > 0.1)) {
             found.push(
-                "the JKR fit of the retraction leaves more than 10 % of the maximum load: apparent works and modulus \
-                 are not those of a smooth sphere"
+                "the JKR fit of the retraction leaves more than 10 % of the maximum load: apparent works \
+                 and modulus are not those of a smooth sphere"
                     .to_owned(),
             );
         }
@@ -180,7 +180,8 @@ pub fn rows(loops: &[MeasuredLoop]) -> Result<Frame, StageError> {
         let of = || estimates.iter().map(|of| of[place].1);
         frame = frame
             .f64(name, of().map(|estimate| estimate.map(|estimate| estimate.value)))
-            .f64(&format!("{name}_ci95"), of().map(|estimate| estimate.as_ref().map(half_width)));
+            .f64(&format!("{name}_ci95_low"), of().map(|of| of.map(|of| of.value - half_width(&of))))
+            .f64(&format!("{name}_ci95_high"), of().map(|of| of.map(|of| of.value + half_width(&of))));
     }
     for place in 0..numbers.first().map_or(0, |of| of.len()) {
         frame = frame.f64(numbers[0][place].0, numbers.iter().map(|of| of[place].1));

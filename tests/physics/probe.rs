@@ -6,8 +6,8 @@
 use crate::support::{Dice, close};
 use hysteron::physics::jkr::Asperity;
 use hysteron::physics::model::{Baseline, Material};
-use hysteron::physics::theory::probe::measured_loop::{Apparent, Evaluated, Measured, evaluate};
-use hysteron::physics::theory::probe::{Branch, Estimate, Path, Probe};
+use hysteron::physics::theory::probe::measured_loop::{Evaluated, Measured, evaluate};
+use hysteron::physics::theory::probe::{Apparent, Branch, Estimate, Path, Probe};
 use std::f64::consts::PI;
 
 /// Radius, modulus, works of adhesion on approach and on retraction.

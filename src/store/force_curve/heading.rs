@@ -1,7 +1,7 @@
 //! Headings of measured loops: names and units of columns, as instruments write them.
 //!
-//! Known forms are `Force (nN)`, `F [mN]`, `force_nN`, `Load uN` and `Kraft/mN` in one line; names in one line and
-//! units in the next; and the lines `# columns:` and `# units:` of JPK. Names may be in quotes.
+//! Known forms are `Force (nN)`, `F [mN]`, `force_nN`, `Load uN` and `Kraft/mN` in one line; names in one
+//! line and units in the next; and the lines `# columns:` and `# units:` of JPK. Names may be in quotes.
 
 use super::units::is_unit;
 use crate::store::scan::text_cells::Separator;
@@ -125,7 +125,7 @@ pub(super) fn plain(name: &str) -> String {
     name.chars().filter(|sign| sign.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// What the lines before the numbers say about the columns.
+/// Names and units of columns from the lines before the numbers.
 #[derive(Debug, Default)]
 pub(super) struct Heading {
     /// Columns of the last line with several names.

@@ -1,8 +1,8 @@
 //! Measured loops of force and displacement as text: CSV and the exports of instruments.
 //!
 //! Lines before the first line of numbers are the heading, with or without a comment sign. Separators are
-//! semicolons, tabs, commas or blanks; numbers have a decimal point or a decimal comma. Units that the file does not
-//! state are not guessed.
+//! semicolons, tabs, commas or blanks; numbers have a decimal point or a decimal comma. Units that the file
+//! does not state are not guessed.
 
 mod heading;
 mod units;
@@ -44,8 +44,8 @@ pub struct ForceCurve {
 /// Reads a loop.
 ///
 /// # Errors
-/// Problem and help: a file that cannot be read, columns that are missing or ambiguous, units that are missing or
-/// unknown, and a line that does not have its numbers, with its number.
+/// Problem and help: a file that cannot be read, columns that are missing or ambiguous, units that are
+/// missing or unknown, and a line that does not have its numbers, with its number.
 pub fn read_force_curve(path: &Path, options: &LoopOptions) -> Result<ForceCurve, String> {
     let table = Table::read(path)?;
     Chosen::of(&table, options)?.curve(&table, options)
@@ -81,7 +81,7 @@ impl Table {
         Ok(table)
     }
 
-    /// Heading and the first rows, at most so many.
+    /// Heading and at most `most` rows.
     fn begin(path: &Path, most: usize) -> Result<Self, String> {
         let unreadable = |error: std::io::Error| {
             format!("{error}\nhelp: give a text with columns of force and displacement")
@@ -132,8 +132,8 @@ impl Table {
             let first = rows.first().map(|(_, first): &(u64, Vec<f64>)| first.len());
             if let Some(first) = first.filter(|first| *first != row.len()) {
                 return Err(format!(
-                    "line {number}: {} numbers, but the previous lines have {first}\nhelp: give each point all \
-                     columns; leave a missing contact radius empty",
+                    "line {number}: {} numbers, but the previous lines have {first}\nhelp: give each point \
+                     all columns; leave a missing contact radius empty",
                     row.len()
                 ));
             }
@@ -162,8 +162,10 @@ fn row(cells: &[&str], decimals: &mut Decimals) -> Result<Vec<f64>, String> {
     let number = |cell: &&str| {
         decimals.number(cell).map_err(|_| {
             let shown: String = cell.chars().take(24).collect();
-            format!("{shown:?} is not a number\nhelp: give one loop with one heading; write numbers with a point or \
-                     a comma, not both")
+            format!(
+                "{shown:?} is not a number\nhelp: give one loop with one heading; write numbers with a \
+                point or a comma, not both"
+            )
         })
     };
     cells.iter().map(number).collect()
@@ -192,8 +194,8 @@ impl Chosen {
         let width = table.rows.first().map_or(0, |(_, row)| row.len());
         if width != columns.len() {
             return Err(format!(
-                "the heading names {} columns ({}), but the lines have {width} numbers\nhelp: give each column a \
-                 name",
+                "the heading names {} columns ({}), but the lines have {width} numbers\nhelp: give each \
+                 column a name",
                 columns.len(),
                 listed()
             ));
@@ -250,7 +252,8 @@ impl Chosen {
                 )),
                 Some(own) => Ok(own),
                 None if given.is_empty() => Err(format!(
-                    "the column {:?} has no unit\nhelp: give it with {option}, or in the heading; units are {known}",
+                    "the column {:?} has no unit\nhelp: give it with {option}, or in the heading; units are \
+                     {known}",
                     columns[place].text
                 )),
                 None => Ok(given.to_owned()),
@@ -270,8 +273,8 @@ impl Chosen {
         let force = newtons(&force_unit).or(spring).ok_or_else(|| {
             if metres(&force_unit).is_some() {
                 format!(
-                    "the column {:?} is a deflection in {force_unit}, not a force\nhelp: give the stiffness of the \
-                     cantilever with --machine-stiffness, in N/m",
+                    "the column {:?} is a deflection in {force_unit}, not a force\nhelp: give the stiffness \
+                     of the cantilever with --machine-stiffness, in N/m",
                     columns[self.force].text
                 )
             } else {
@@ -319,7 +322,8 @@ impl Table {
             match (value.is_nan(), value < 0.0) {
                 (true, _) => Ok(0.0),
                 (_, true) => Err(format!(
-                    "line {line}: the contact radius or area is negative\nhelp: leave it empty without contact"
+                    "line {line}: the contact radius or area is negative\nhelp: leave it empty without \
+                     contact"
                 )),
                 _ if is_area => Ok((value / std::f64::consts::PI).sqrt()),
                 _ => Ok(value),

@@ -38,7 +38,7 @@ pub(super) fn seconds(unit: &str) -> Option<f64> {
     })
 }
 
-/// True for any unit that a heading may have, those that are not read included.
+/// True for any unit that a heading may have, read or not.
 pub(super) fn is_unit(unit: &str) -> bool {
     newtons(unit).is_some()
         || metres(unit).is_some()

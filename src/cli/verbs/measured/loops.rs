@@ -159,8 +159,8 @@ fn conditions(found: &MeasuredLoop) -> Vec<(&'static str, String)> {
         (
             "baseline",
             format!(
-                "subtracted: offset {offset:.3e} N, slope {slope:.3e} N/m, drift {drift:.3e} N; fitted to {before} \
-                 points before contact and {after} after separation"
+                "subtracted: offset {offset:.3e} N, slope {slope:.3e} N/m, drift {drift:.3e} N; fitted to \
+                 {before} points before contact and {after} after separation"
             ),
         ),
         ("noise", format!("{:.2e} N without contact; closure {:.1} %", of.noise_n, 100.0 * of.closure)),
@@ -211,7 +211,8 @@ fn answer(found: &MeasuredLoop, written: Option<&Path>) -> Value {
     });
     for (name, estimate) in found.estimates() {
         answer[name] = json!(estimate.map(|of| of.value));
-        answer[format!("{name}_ci95")] = json!(estimate.as_ref().map(half_width));
+        answer[format!("{name}_ci95_low")] = json!(estimate.map(|of| of.value - half_width(&of)));
+        answer[format!("{name}_ci95_high")] = json!(estimate.map(|of| of.value + half_width(&of)));
     }
     for (name, number) in found.numbers() {
         answer[name] = json!(number);

@@ -36,7 +36,7 @@ impl Fitted {
         full[..self.terms].to_vec()
     }
 
-    /// Offset \[N\], slope \[N/m\] and drift over the loop \[N\]; those that were not fitted are 0.
+    /// Offset \[N\], slope \[N/m\] and drift over the loop \[N\]; a parameter that was not fitted is 0.
     pub(super) fn terms(&self) -> [f64; 3] {
         let value = |term: usize| self.normal.as_ref().and_then(|of| of.values.get(term)).copied();
         let [low, width] = self.range;
@@ -74,7 +74,8 @@ impl Fitted {
     }
 }
 
-/// Number of points from the beginning of a branch to the first contact. `load` and `at` begin without contact.
+/// Number of points from the beginning of a branch to the first contact. `load` and `at` begin without
+/// contact.
 fn until_contact(load: &[f64], at: &[f64], floor: f64) -> usize {
     let seed = ((SEED * load.len() as f64) as usize).max(FEWEST).min(load.len());
     let mut end = seed;
@@ -91,7 +92,7 @@ fn until_contact(load: &[f64], at: &[f64], floor: f64) -> usize {
         if first <= end {
             return first;
         }
-        // The line is fitted anew to more points, up to twice as many.
+        // The line is fitted again to more points, up to twice as many.
         end = first.min(2 * end);
     }
 }

@@ -1,10 +1,11 @@
 //! Fit of load against penetration on both branches, for loops without contact radius.
 //!
-//! Both branches have one modulus and one origin `δ0` of the penetration, and each its own work of adhesion. The load of
-//! JKR's stable branch at `δ − δ0` is fitted by the method of Levenberg and Marquardt. Parameters are `E*`,
-//! `s = sqrt(w)` of each branch and `δ0`; `s` may become negative, which is less contact than without adhesion.
-//! After the load reversal the contact radius is constant until the energy release rate is the work of adhesion on
-//! retraction, so that the load is that of a flat punch, `F = 2E*(aδ − a³/(3R))`.
+//! Both branches have one modulus and one origin `δ0` of the penetration, and each its own work of adhesion.
+//! The load of JKR's stable branch at `δ − δ0` is fitted by the method of Levenberg and Marquardt.
+//! Parameters are `E*`, `s = sqrt(w)` of each branch and `δ0`; `s` may become negative, which is less
+//! contact than without adhesion. After the load reversal the contact radius is constant until the energy
+//! release rate is the work of adhesion on retraction, so that the load is that of a flat punch, `F = 2E*(aδ
+//! − a³/(3R))`.
 
 use super::regression::{Residuals, solve, variance_along};
 use super::{Estimate, Probe};
@@ -94,7 +95,8 @@ impl Model {
     }
 }
 
-/// `t = sqrt(a)` on the stable branch of `δ = t⁴/R − p t`; at the end of the branch below it, 0 without adhesion.
+/// `t = sqrt(a)` on the stable branch of `δ = t⁴/R − p t`; at the end of the branch below it, 0 without
+/// adhesion.
 ///
 /// The left side is convex and increasing from its minimum on: Newton's method from above converges.
 fn root_of_radius(penetration: f64, radius: f64, pull: f64) -> f64 {
@@ -175,7 +177,7 @@ impl Search {
         self.points.iter().map(row).collect()
     }
 
-    /// The minimum from a start; nothing if the parameters cannot be told apart there.
+    /// The minimum from a start; nothing if the points do not determine the parameters.
     fn minimum(&self, start: Model) -> Option<Model> {
         let (mut model, mut squares, mut damping) = (start, self.squares(&start), 1e-3);
         for _ in 0..MOST_STEPS {
@@ -203,8 +205,8 @@ impl Search {
 }
 
 impl Probe {
-    /// JKR fit of load against penetration: retraction from the load reversal to the pull-off force, and approach
-    /// after the jump into contact, which may be empty.
+    /// JKR fit of load against penetration: retraction from the load reversal to the pull-off force, and
+    /// approach after the jump into contact, which may be empty.
     ///
     /// # Errors
     /// Six points of retraction with tension at their end, and parameters that the points determine.
@@ -217,11 +219,12 @@ impl Probe {
         if back.len() < FEWEST || pull_off <= 0.0 {
             return Err(PhysicsError::ProbeLoop {
                 problem: format!(
-                    "a JKR fit of load against penetration, with {} points on retraction and a pull-off force \
-                     of {pull_off:.3e} N",
+                    "a JKR fit of load against penetration, with {} points on retraction and a pull-off \
+                     force of {pull_off:.3e} N",
                     back.len()
                 ),
-                help: "the fit needs at least 6 points between the load reversal and a tensile pull-off force",
+                help: "the fit needs at least 6 points between the load reversal and a tensile pull-off \
+                    force",
             });
         }
         if all.len() < FEWEST {

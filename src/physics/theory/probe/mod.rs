@@ -1,7 +1,7 @@
 //! Apparent work of adhesion of a spherical probe on an elastic half-space.
 //!
-//! A loop of a probe of radius `R` on a half-space of reduced modulus `E*` is read as that of a smooth JKR sphere. Four
-//! numbers follow, which are equal for a smooth sphere and differ for a rough one:
+//! A loop of a probe of radius `R` on a half-space of reduced modulus `E*` is read as that of a smooth JKR
+//! sphere. Four numbers follow, which are equal for a smooth sphere and differ for a rough one:
 //!
 //! - from the pull-off force, `w = F_po/(1.5πR)`;
 //! - from the dissipated energy of a loop under displacement control with jump into contact at `δ = 0`,
@@ -11,6 +11,7 @@
 //!
 //! [`measured_loop`] evaluates a measured loop: baseline, load reversal, pull-off force, energies.
 
+mod apparent;
 mod baseline;
 mod force_fit;
 pub mod measured_loop;
@@ -23,6 +24,7 @@ use crate::PhysicsError;
 use crate::jkr::loop_loss_constant;
 use std::f64::consts::PI;
 
+pub use apparent::Apparent;
 pub use force_fit::{ForceFit, Path};
 pub use orientation::{Oriented, oriented};
 
@@ -82,8 +84,8 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// Probe of radius `R` \[m\] on a half-space of reduced modulus `E*` \[Pa\]; without modulus, fits have it as a
-    /// parameter.
+    /// Probe of radius `R` \[m\] on a half-space of reduced modulus `E*` \[Pa\]; without modulus, fits have
+    /// it as a parameter.
     ///
     /// # Errors
     /// Both must be positive and finite.
@@ -126,10 +128,11 @@ impl Probe {
         Ok(pull_off_n / (1.5 * PI * self.radius_m))
     }
 
-    /// Work of adhesion \[J/m²\] from the dissipated energy `Θ ≥ 0` \[J\] of a loop under displacement control.
+    /// Work of adhesion \[J/m²\] from the dissipated energy `Θ ≥ 0` \[J\] of a loop under displacement
+    /// control.
     ///
-    /// `w = (E*R/π) (Θ/(2 × 0.5262… E*R³))^(3/5)`, the inverse of Eq A1. A compliant machine dissipates more, so that
-    /// its loop gives a work that is too large.
+    /// `w = (E*R/π) (Θ/(2 × 0.5262… E*R³))^(3/5)`, the inverse of Eq A1. A compliant machine dissipates
+    /// more, so that its loop gives a work that is too large.
     ///
     /// # Errors
     /// The energy must not be negative, and the modulus must be given.
@@ -140,9 +143,9 @@ impl Probe {
         Ok(modulus * self.radius_m / PI * (loss_j / unit_j).powf(0.6))
     }
 
-    /// Apparent works of adhesion of a loop from its pull-off force \[N\], its dissipated energy \[J\] and its two
-    /// branches. Fits have the modulus of the probe. Points of the retraction with more than 96 % of the maximum contact
-    /// area are left out: there the contact edge may be pinned.
+    /// Apparent works of adhesion of a loop from its pull-off force \[N\], its dissipated energy \[J\] and
+    /// its two branches. Fits have the modulus of the probe. Points of the retraction with more than 96 % of
+    /// the maximum contact area are left out: there the contact edge may be pinned.
     ///
     /// # Errors
     /// The modulus must be given, and the columns of a branch must be equally long.

@@ -19,8 +19,8 @@ pub struct Oriented {
 
 /// Gives a loop the signs of this program.
 ///
-/// The displacement increases from the beginning to the load reversal, the point farthest from both ends. With
-/// [`Compression::Auto`] the load is positive there, relative to the first points.
+/// The displacement increases from the beginning to the load reversal, the point farthest from both ends.
+/// With [`Compression::Auto`] the load is positive there, relative to the first points.
 ///
 /// # Errors
 /// Columns of different length, and a load at the reversal that is too small to have a sign.

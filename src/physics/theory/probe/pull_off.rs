@@ -1,7 +1,7 @@
 //! Pull-off force of a measured branch with noise.
 //!
-//! The smallest of many noisy loads is too small. So a polynomial is fitted to the loads near the minimum, and its
-//! minimum is taken.
+//! The smallest of many noisy loads is too small. So a polynomial is fitted to the loads near the minimum,
+//! and its minimum is taken.
 
 use super::Estimate;
 use super::regression::{Residuals, solve, variance_along};
@@ -13,8 +13,9 @@ const FEWEST: usize = 8;
 /// Points of the moving mean that finds the minimum.
 const SMOOTH: usize = 5;
 
-/// Pull-off force \[N\] from the loads of the unloading branch while in contact, and the row of its minimum. The
-/// standard error has the difference of two polynomials in it. `noise` is the standard deviation of one load.
+/// Pull-off force \[N\] from the loads of the unloading branch while in contact, and the row of its minimum.
+/// The standard error has the difference of two polynomials in it. `noise` is the standard deviation of one
+/// load.
 pub(super) fn pull_off(load: &[f64], noise: f64, inflation: f64) -> Option<(Estimate, usize)> {
     let smallest = |values: &mut dyn Iterator<Item = (usize, f64)>| values.min_by(|u, v| u.1.total_cmp(&v.1));
     let (raw_row, raw) = smallest(&mut load.iter().copied().enumerate())?;
@@ -52,7 +53,7 @@ struct Minimum {
     residuals: Residuals,
 }
 
-/// Minimum of a polynomial with so many terms over a window of rows.
+/// Minimum of a polynomial with `terms` terms over a window of rows.
 fn minimum(load: &[f64], window: std::ops::RangeInclusive<usize>, terms: i32) -> Option<Minimum> {
     let (low, high) = (*window.start() as f64, *window.end() as f64);
     let powers = |row: f64| {

@@ -1,7 +1,7 @@
 //! Fit of contact radius against load.
 //!
-//! With `X = a^(3/2)` JKR's load `F = 4E*a³/(3R) − sqrt(8πE*w a³)` is `αX² − βX`, linear in `α = 4E*/(3R)` and
-//! `β = sqrt(8πE*w)`. Residuals are those of the load.
+//! With `X = a^(3/2)` JKR's load `F = 4E*a³/(3R) − sqrt(8πE*w a³)` is `αX² − βX`, linear in `α = 4E*/(3R)`
+//! and `β = sqrt(8πE*w)`. Residuals are those of the load.
 
 use super::regression::{Normal, Residuals, solve};
 use super::{Branch, Estimate, JkrFit, Probe};
@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 /// Fewest points in contact of a fit.
 pub(super) const FEWEST: usize = 4;
 
-/// Part of the maximum contact area above which a retraction is not fitted: after the load reversal the edge may be
-/// pinned, and the area constant.
+/// Part of the maximum contact area above which a retraction is not fitted: after the load reversal the edge
+/// may be pinned, and the area constant.
 const PINNED: f64 = 0.96;
 
 /// Loads and areas of a retraction less the points at which the contact edge may be pinned.

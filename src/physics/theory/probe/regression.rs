@@ -2,13 +2,16 @@
 
 use crate::math::dense::Lu;
 
-/// Largest factor by which correlation increases a variance. Residuals that need more do not scatter about the model.
+/// Largest factor by which correlation increases a variance. Residuals that need more do not scatter about
+/// the model.
 const MOST_INFLATION: f64 = 50.0;
 
-/// Standard errors `1/√n` of a correlation that are added to it: one that is too small makes errors too small.
+/// Standard errors `1/√n` of a correlation that are added to it: one that is too small makes errors too
+/// small.
 const MARGIN: f64 = 2.0;
 
-/// Entries of the inverse of a normal matrix with unit diagonal from which on parameters cannot be told apart.
+/// Entries of the inverse of a normal matrix with unit diagonal from which on the parameters are not
+/// determined.
 const SINGULAR: f64 = 1e13;
 
 /// Solution of linear normal equations.
@@ -19,8 +22,8 @@ pub(super) struct Normal {
     pub(super) inverse: Vec<f64>,
 }
 
-/// Solves `min Σ (y − g·x)²` for rows of gradients `g` and values `y`; nothing if the parameters cannot be told
-/// apart. `damping` is added to the diagonal, relative to it.
+/// Solves `min Σ (y − g·x)²` for rows of gradients `g` and values `y`; nothing if they do not determine
+/// the parameters. `damping` is added to the diagonal, relative to it.
 pub(super) fn solve(rows: &[(Vec<f64>, f64)], damping: f64) -> Option<Normal> {
     let size = rows.first()?.0.len();
     let (mut matrix, mut right) = (vec![0.0; size * size], vec![0.0; size]);
@@ -86,7 +89,7 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    /// Of residuals in the order of the path, after a fit with so many parameters.
+    /// Of residuals in the order of the path, after a fit with this number of parameters.
     pub(super) fn of(residuals: &[f64], parameters: usize) -> Self {
         let count = residuals.len();
         let squares: f64 = residuals.iter().map(|residual| residual * residual).sum();
