@@ -14,6 +14,7 @@ pages!(
     tutorial,
     howto_scan,
     howto_spectrum,
+    howto_loop,
     howto_sweep,
     howto_cluster,
     howto_data,

@@ -1,6 +1,7 @@
 //! Parameters of a case: those of the physics, and those of the spec.
 
 mod case;
+mod experiment;
 
 pub use crate::physics::model::*;
 pub use crate::physics::theory::regime::{BRIDGED, FLATTENED, LARGE_AREA, Regime, SEPARATE};
@@ -8,3 +9,4 @@ pub use case::{
     AsperityOptions, Attraction, CaseParams, ElementOptions, GeneratedSurface, LoadingPath, MeasuredSurface,
     MethodOptions, SurfaceSource, TabulatedSpectrum,
 };
+pub use experiment::{Experiment, LoopOptions};

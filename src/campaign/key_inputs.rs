@@ -12,6 +12,9 @@ use crate::physics::elements::Elements;
 use crate::spec::{Case, CaseParams, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, Spec};
 use serde_json::{Map, Value, json};
 
+/// Version of the evaluation of measured loops.
+const LOOP_VERSION: u32 = 1;
+
 /// Form of key inputs.
 pub(super) trait Form: Clone {
     /// The form of a value.
@@ -116,11 +119,21 @@ impl Campaign {
             F::list(words.map(F::word).collect())
         };
         let cycles = self.cycles.iter().zip(cycles).map(cycle);
-        F::object(vec![
+        let mut members = vec![
             ("name", F::word(&self.spec.name)),
             ("cases", F::list(cases.collect())),
             ("cycles", F::list(cycles.collect())),
-        ])
+        ];
+        members.extend(self.loops_of_key().map(|loops| ("loops", F::of(&loops))));
+        F::object(members)
+    }
+
+    /// Measured loops: labels and checksums of the files, and how they are read.
+    fn loops_of_key(&self) -> Option<Value> {
+        let (experiment, options) = (self.spec.experiment.as_ref()?, self.spec.loop_options()?);
+        let one = |name: &String| json!([self.file_label(name), self.spec.files.get(name)]);
+        let files: Vec<Value> = experiment.loops.iter().map(one).collect();
+        Some(json!({ "version": LOOP_VERSION, "files": files, "options": options }))
     }
 
     /// Inputs of the report: the tables, the spec with all defaults as it shows it, and formats that this

@@ -48,8 +48,8 @@ impl Campaign {
         surface.file().map(|file| self.file_label(file))
     }
 
-    /// Label of a file in tables.
-    fn file_label(&self, file: &str) -> String {
+    /// Label of a file of a measured surface or loop in tables.
+    pub(crate) fn file_label(&self, file: &str) -> String {
         let name = || Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned();
         self.labels.get(file).cloned().unwrap_or_else(name)
     }

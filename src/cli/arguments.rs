@@ -195,6 +195,8 @@ pub(super) struct ImportArguments {
     /// Low-pass (S-filter) cut-off wavelength in pixels
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(4..=64))]
     pub(super) points: u8,
+    #[command(flatten)]
+    pub(super) of_loop: LoopArguments,
     /// Report the statistics without writing a file
     #[arg(long, short = 'n')]
     pub(super) dry_run: bool,
@@ -204,6 +206,51 @@ pub(super) struct ImportArguments {
     /// Print JSON, with the power spectrum
     #[arg(long)]
     pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Options for measured loops")]
+pub(super) struct LoopArguments {
+    /// The file is a loop [default: if its heading names force and displacement]
+    #[arg(long = "loop")]
+    pub(super) is_loop: bool,
+    /// Column of the force
+    #[arg(long, value_name = "COLUMN")]
+    pub(super) force_column: Option<String>,
+    /// Unit of the force, e.g. nN
+    #[arg(long, value_name = "UNIT")]
+    pub(super) force_unit: Option<String>,
+    /// Column of the displacement or penetration
+    #[arg(long, value_name = "COLUMN")]
+    pub(super) displacement_column: Option<String>,
+    /// Unit of the displacement, e.g. um
+    #[arg(long, value_name = "UNIT")]
+    pub(super) displacement_unit: Option<String>,
+    /// Column of the contact radius or contact area
+    #[arg(long, value_name = "COLUMN")]
+    pub(super) radius_column: Option<String>,
+    /// Unit of the contact radius or area, e.g. um or um2
+    #[arg(long, value_name = "UNIT")]
+    pub(super) radius_unit: Option<String>,
+    #[arg(
+        long, value_name = "SIGN", value_parser = ["auto", "positive", "negative"],
+        hide_possible_values = true, help = help::COMPRESSION
+    )]
+    pub(super) compression: Option<String>,
+    #[arg(
+        long, value_name = "KIND", value_parser = ["line", "offset", "none"],
+        hide_possible_values = true, help = help::BASELINE
+    )]
+    pub(super) baseline: Option<String>,
+    /// Radius of the spherical probe: 20um, or 2e-5 in metres
+    #[arg(long, value_name = "LENGTH")]
+    pub(super) probe_radius: Option<String>,
+    /// Reduced modulus in pascals [default: fitted]
+    #[arg(long, value_name = "PASCALS")]
+    pub(super) modulus: Option<f64>,
+    /// Stiffness of the machine in N/m; subtracts F/k from the displacement
+    #[arg(long, value_name = "N/M")]
+    pub(super) machine_stiffness: Option<f64>,
 }
 
 #[derive(Debug, Args)]

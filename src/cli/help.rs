@@ -45,14 +45,28 @@ pub(super) const FAST_AXIS: &str = "\
 Direction of the scan lines: rows or columns of the file
 [default: auto, the one with the larger offsets]";
 
+/// `--compression` of `import`.
+pub(super) const COMPRESSION: &str = "\
+Sign of a compressive force: positive or negative
+[default: auto, the sign at the load reversal]";
+
+/// `--baseline` of `import`.
+pub(super) const BASELINE: &str = "\
+Baseline fitted to the points without contact: line, offset or none
+[default: line, with offset, slope and drift]";
+
 /// The description of `import`.
 pub(super) const IMPORT: &str = "\
-Preprocess a measured surface and report its statistics
+Preprocess a measured surface, or evaluate a measured loop
 
 Formats: HDF5, NetCDF, X3P (ISO 25178-72), NumPy .npy, and text: a matrix with
 one line for each scan line, columns x, y, z, or one column. A scan that is not
 square is cropped to its central square. Name the output as surface.file in a
-spec. A spec may also name the original file, with the same options as keys.";
+spec. A spec may also name the original file, with the same options as keys.
+
+A text with columns of force and displacement is a loop: its pull-off force,
+dissipated energy, works of adhesion and modulus are printed with intervals,
+and its points are written as <name of FILE>_loop.parquet.";
 
 /// The description of `findings`.
 pub(super) const FINDINGS: &str = "\
@@ -66,7 +80,7 @@ has a verdict on each finding, with the numbers behind it.";
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Simulate", &["init", "run", "plan", "status", "retry", "submit"]),
     ("Results", &["report", "compare", "findings", "show", "export"]),
-    ("Measured surfaces", &["import"]),
+    ("Measurements", &["import"]),
     ("Maintenance", &["verify", "explain", "gc"]),
     ("Single stages", &["generate", "extract", "cycle", "aggregate"]),
     ("Other", &["schema", "completions", "man"]),

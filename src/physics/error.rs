@@ -35,6 +35,14 @@ pub enum PhysicsError {
         /// Recommended action.
         help: &'static str,
     },
+    /// A loop of a probe that cannot be evaluated.
+    #[error("{problem}\nhelp: {help}")]
+    ProbeLoop {
+        /// Fault, with its numbers.
+        problem: String,
+        /// Recommended action.
+        help: &'static str,
+    },
     /// A surface without asperities.
     #[error(
         "the surface has no asperity: no local maximum with positive mean curvature\nhelp: use a larger \

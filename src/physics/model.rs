@@ -201,6 +201,28 @@ choice! {
     }
 }
 choice! {
+    /// Sign of a compressive load in the file of a measured loop.
+    Compression {
+        /// The sign of the load at the load reversal, relative to that without contact.
+        Auto = "auto",
+        /// Compression is positive.
+        Positive = "positive",
+        /// Compression is negative.
+        Negative = "negative",
+    }
+}
+choice! {
+    /// Baseline that is subtracted from the load of a measured loop.
+    Baseline {
+        /// Offset, slope along the displacement and drift, fitted to the points without contact at both ends.
+        Line = "line",
+        /// Offset alone.
+        Offset = "offset",
+        /// Nothing is subtracted.
+        None = "none",
+    }
+}
+choice! {
     /// Treatment of the missing points of a measured surface.
     Missing {
         /// Missing points are an error.

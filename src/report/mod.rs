@@ -5,6 +5,7 @@
 mod cases;
 mod comparison;
 mod data;
+mod experiment;
 mod failures;
 mod header;
 mod layout;
@@ -18,6 +19,7 @@ mod theories;
 mod validity;
 
 pub use comparison::{Compared, comparison_page};
+pub use experiment::MeasuredLoops;
 pub use failures::Failure;
 pub use live::{LiveLoop, LiveRun, LiveStage, live_page};
 pub use methods::MethodFigures;
@@ -64,6 +66,8 @@ pub struct Report<'a> {
     pub method_figures: &'a MethodFigures,
     /// Files of the measured surfaces.
     pub scans: &'a [SurfaceHeader],
+    /// Measured loops, if the spec has any.
+    pub measured_loops: Option<&'a MeasuredLoops>,
     /// Names of the sweeps, in order.
     pub sweeps: &'a [String],
     /// Panels, each with the name of its sweep.
@@ -99,6 +103,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         }
         (methods::side_by_side(&cases, report.methods, report.method_figures, &numbers)?)
         (scans::scans(report.scans))
+        @if let Some(loops) = report.measured_loops { (experiment::section(loops, &cases, &numbers)?) }
         @if has_results {
             @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
             @if !report.cycles.is_empty() { (single_cycle::section(&numbers, report.cycles)) }

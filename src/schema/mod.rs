@@ -10,6 +10,7 @@ mod curves;
 mod cycles;
 mod estimates;
 mod event_kinds;
+mod measured;
 mod methods;
 mod parameter;
 mod parameters;
@@ -27,6 +28,7 @@ pub use estimates::{
     DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
 };
 pub use event_kinds::{EVENT_COLOURS, EVENT_KINDS, event_kind};
+pub use measured::{MEASURED_LOOPS, MEASURED_STEPS};
 pub use methods::METHODS;
 pub use parameter::{CaseFacts, Parameter, ParameterValue};
 pub use parameters::{PARAMETERS, parameters_by_rank};
@@ -135,6 +137,8 @@ pub static TABLES: &[&Table] = &[
     &METHODS,
     &PANELS,
     &COMPARISON,
+    &MEASURED_LOOPS,
+    &MEASURED_STEPS,
 ];
 
 impl Column {

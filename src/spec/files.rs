@@ -20,7 +20,7 @@ use super::written::{Written, wrong_type};
 use super::{Axis, Case, Spec, SpecErrors, Value, psd};
 use crate::formats::{Found, Refusal, recognize};
 use crate::keys::digest_of_file;
-use crate::model::SurfaceSource;
+use crate::model::{Experiment, SurfaceSource};
 use crate::paths::whole;
 
 /// Reads the table `[files]`.
@@ -66,9 +66,12 @@ pub(super) fn files(
 pub(super) fn named(
     files: BTreeMap<String, (String, Range<usize>)>,
     cases: &[Case],
+    experiment: Option<&Experiment>,
     faults: &mut Faults<'_>,
 ) -> BTreeMap<String, String> {
-    let wanted: HashSet<&str> = cases.iter().filter_map(|case| case.params.surface.file()).collect();
+    let loops = experiment.into_iter().flat_map(|of| &of.loops).map(String::as_str);
+    let of_cases = cases.iter().filter_map(|case| case.params.surface.file());
+    let wanted: HashSet<&str> = of_cases.chain(loops).collect();
     for (name, (_, span)) in files.iter().filter(|(name, _)| !wanted.contains(name.as_str())) {
         let message = format!("[files] has a checksum of \"{}\", which is not used by any case", shown(name));
         faults.add(
@@ -134,6 +137,7 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) ->
         }
     }
     tabulate(&mut spec, &moved, text, &mut faults);
+    loops(&mut spec, &known, folder, (text, &mut faults), &mut moved);
     rename(&mut spec, &moved);
     join_copies(&mut spec);
     faults.finish(Some(spec))
@@ -168,6 +172,49 @@ fn tabulate(spec: &mut Spec, moved: &BTreeMap<String, String>, text: &str, fault
                 blame(&name, text, message, help, faults);
             }
             Err(_) => {}
+        }
+    }
+}
+
+/// Checks the files of measured loops and takes their checksums. A loop of a resolved spec may be missing.
+fn loops(
+    spec: &mut Spec,
+    known: &BTreeMap<String, String>,
+    folder: &Path,
+    (text, faults): (&str, &mut Faults<'_>),
+    moved: &mut BTreeMap<String, String>,
+) {
+    let Some(Experiment { loops, options }) = spec.experiment.clone() else { return };
+    for name in &loops {
+        let read = |found: &String| {
+            let path = Path::new(found);
+            match super::experiment::fault(path, &options) {
+                Some((problem, help)) => Err(Refusal { problem, help }),
+                None => digest_of_file(path).map_err(|error| Refusal {
+                    problem: error.to_string(),
+                    help: "check the file".to_owned(),
+                }),
+            }
+        };
+        let checked = match known.get(name) {
+            Some(digest) => Ok((of_resolved(name, folder, digest), digest.clone())),
+            None => located(name, folder).and_then(|found| Ok((found.clone(), read(&found)?))),
+        };
+        match checked {
+            Ok((found, digest)) => {
+                if Path::new(name).is_absolute() {
+                    spec.absolute_files.insert(found.clone());
+                }
+                if found != *name {
+                    moved.insert(name.clone(), found.clone());
+                }
+                spec.files.insert(found, digest);
+            }
+            Err(Refusal { problem, help }) => {
+                let at = if faults.is_full() { 0 } else { text.find(name.as_str()).unwrap_or_default() };
+                let message = format!("the measured loop \"{name}\" cannot be read: {problem}");
+                faults.add(&(at..at + name.len().min(text.len() - at)), message, help);
+            }
         }
     }
 }
@@ -209,7 +256,8 @@ pub(super) fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
     let swept = axes
         .flat_map(|axis| &mut axis.values)
         .filter_map(|value| if let Value::Text(name) = value { Some(name) } else { None });
-    for name in own.chain(swept) {
+    let loops = spec.experiment.iter_mut().flat_map(|of| &mut of.loops);
+    for name in own.chain(swept).chain(loops) {
         if let Some(found) = moved.get(name) {
             name.clone_from(found);
         }

@@ -61,7 +61,11 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     }
     complete(&mut base, &origins);
     // Of a sweep with a fault the cases are unknown.
-    let files = if faults.count() == 0 { named(draft.files, &cases.list, faults) } else { BTreeMap::new() };
+    let files = if faults.count() == 0 {
+        named(draft.files, &cases.list, draft.experiment.as_ref(), faults)
+    } else {
+        BTreeMap::new()
+    };
     let first = read.first().map(|sweep| &sweep.span);
     bound_tasks(&cases.list, draft.realizations, draft.realizations_at.as_ref().or(first), faults);
     choices.check(draft.auto_at.as_ref(), faults);
@@ -74,6 +78,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
         seed: draft.seed,
         realizations: draft.realizations,
         figures: draft.figures,
+        experiment: draft.experiment,
         cases: cases.list,
         base,
         sweeps,

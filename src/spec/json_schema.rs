@@ -69,6 +69,7 @@ pub fn json_schema() -> String {
     properties.insert("seed", seed);
     properties.insert("realizations", realizations());
     properties.insert("figures", figures());
+    properties.insert("experiment", experiment());
     let sweep = json!({
         "type": "object", "required": ["name"], "additionalProperties": false, "properties": in_sweep,
     });
@@ -165,6 +166,40 @@ fn definition(key: &Key) -> Value {
 fn number(limits: &Limits) -> Value {
     let low = if limits.above { "exclusiveMinimum" } else { "minimum" };
     json!({ "type": "number", low: limits.low, "maximum": limits.high })
+}
+
+fn experiment() -> Value {
+    use super::experiment::{LONGEST, MODULUS, MOST_LOOPS, RADIUS, STIFFNESS, WORDS};
+    let text = |meaning: &str| {
+        json!({
+            "type": "string", "pattern": PLAIN, "minLength": 1, "maxLength": LONGEST,
+            "description": meaning,
+        })
+    };
+    let mut keys: BTreeMap<&str, Value> =
+        super::experiment::MEANINGS.iter().map(|(name, _, meaning)| (*name, text(meaning))).collect();
+    for (name, choice) in WORDS {
+        keys.insert(name, json!({ "type": "string", "enum": words(choice), "default": choice[0].0 }));
+    }
+    for (name, limits) in
+        [("probe_radius_m", RADIUS), ("contact_modulus_pa", MODULUS), ("machine_stiffness_n_m", STIFFNESS)]
+    {
+        let mut schema = number(&limits);
+        schema["description"] = limits.note.into();
+        keys.insert(name, schema);
+    }
+    let file = json!({ "type": "string", "pattern": PLAIN, "minLength": 1, "maxLength": LONGEST });
+    keys.insert(
+        "loops",
+        json!({
+            "type": "array", "items": file, "minItems": 1, "maxItems": MOST_LOOPS, "uniqueItems": true,
+            "description": "Files of measured loops.",
+        }),
+    );
+    json!({
+        "type": "object", "additionalProperties": false, "properties": keys, "required": ["loops"],
+        "description": "Measured loops for comparison with the simulated ones.",
+    })
 }
 
 fn figures() -> Value {

@@ -8,6 +8,7 @@ mod auto;
 mod cases;
 mod elements;
 mod entries;
+mod experiment;
 mod fault;
 mod figures;
 mod files;
@@ -38,7 +39,7 @@ use serde::Serialize;
 
 use crate::constants::{Constant, Constants};
 pub use crate::model::CaseParams;
-use crate::model::Method;
+use crate::model::{Experiment, LoopOptions, Method};
 pub use crate::physics::elements::PER_WAVELENGTH;
 pub use crate::text::quoted;
 pub use auto::Chooser;
@@ -157,6 +158,9 @@ pub struct Spec {
     pub realizations: Realizations,
     /// Files of the figures.
     pub figures: Figures,
+    /// Measured loops.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub experiment: Option<Experiment>,
     /// The cases: each different one once, in the order of their first occurrence in the sweeps.
     pub cases: Vec<Case>,
     /// Parameters that the sweeps override; a case of its own only without a sweep.
@@ -170,7 +174,7 @@ pub struct Spec {
     /// Places in [`Self::cases`] of these points, until all are chosen.
     #[serde(skip)]
     auto_cases: Vec<usize>,
-    /// BLAKE3 of the files of measured surfaces, by the names by which they were found.
+    /// BLAKE3 of the files of measured surfaces and loops, by the names by which they were found.
     pub files: BTreeMap<String, String>,
     /// Files that the spec names by absolute paths.
     #[serde(skip)]
@@ -344,6 +348,22 @@ impl Spec {
         spec.files = self.files.iter().map(|(name, digest)| (renamed(name), digest.clone())).collect();
         spec.absolute_files = self.absolute_files.iter().map(renamed).collect();
         spec
+    }
+
+    /// Evaluation of the measured loops: the modulus of the table `[material]` unless the experiment has one.
+    #[must_use]
+    pub fn loop_options(&self) -> Option<LoopOptions> {
+        let options = &self.experiment.as_ref()?.options;
+        let probe_radius_m = self.probe_radius_m();
+        let of_material = Some(self.base.material.contact_modulus_pa);
+        let contact_modulus_pa =
+            options.contact_modulus_pa.or(of_material).filter(|_| probe_radius_m.is_some());
+        Some(LoopOptions { probe_radius_m, contact_modulus_pa, ..options.clone() })
+    }
+
+    /// Radius of the probe of the measured loops \[m\].
+    fn probe_radius_m(&self) -> Option<f64> {
+        self.experiment.as_ref()?.options.probe_radius_m
     }
 
     /// The spec with every default written out: reading it again gives an equal spec.

@@ -70,6 +70,7 @@ pub fn reference() -> String {
         page += &section(name);
     }
     let cases = paragraph("- ", &format!("The sweeps of a spec make at most {MAX_CASES} cases."));
+    page += &experiment();
     page + SWEEP + &cases + "\n" + FILES
 }
 
@@ -114,6 +115,34 @@ fn top() -> String {
            - `figures.width_mm`: Width in millimetres of a panel in PNG and PDF files. Labels next to a\n  \
            panel add to it.\n\
            - `figures.font`: Font family of the SVG files. PNG and PDF files have DejaVu Sans.\n"
+}
+
+/// The table of measured loops.
+fn experiment() -> String {
+    use super::experiment::{MEANINGS, MODULUS, RADIUS, STIFFNESS, WORDS};
+    let mut section = "\n## `[experiment]`\n\nMeasured loops for comparison with the simulated ones: \
+         [My loop next to the simulated one](howto_loop.md).\n\n| key | type | unit | range | default \
+         |\n|---|---|---|---|---|\n"
+        .to_owned();
+    let mut meanings = String::new();
+    for (name, kind, meaning) in MEANINGS {
+        let default = if name == "loops" { "required" } else { "" };
+        section += &format!("| `experiment.{name}` | {kind} | | | {default} |\n");
+        meanings += &(paragraph("- ", &format!("`experiment.{name}`: {meaning}")) + "\n");
+    }
+    for (name, words) in WORDS {
+        section += &format!("| `experiment.{name}` | string | | | `\"{}\"` |\n", words[0].0);
+        meanings += &format!("- `experiment.{name}`:\n");
+        meanings.extend(words.iter().map(|(word, meaning)| entry(word, meaning)));
+    }
+    let numbers =
+        [("probe_radius_m", RADIUS), ("contact_modulus_pa", MODULUS), ("machine_stiffness_n_m", STIFFNESS)];
+    for (name, limits) in numbers {
+        section +=
+            &format!("| `experiment.{name}` | float | {} | {} | |\n", limits.unit.trim(), range(&limits));
+        meanings += &(paragraph("- ", &format!("`experiment.{name}`: {}.", limits.note)) + "\n");
+    }
+    section + "\n" + &meanings
 }
 
 /// A table of the spec: an overview, then the meaning of each key.

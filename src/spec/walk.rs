@@ -7,6 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::entries::{Entry, entries, keys, lost, shown};
+use super::experiment::experiment;
 use super::fault::Faults;
 use super::figures::{Figures, figures};
 use super::files::files;
@@ -15,7 +16,7 @@ use super::realizations::{DEFAULT, Realizations, realizations};
 use super::sweep::{SweepDraft, sweeps};
 use super::values::Values;
 use super::{auto, top, value};
-use crate::model::Method;
+use crate::model::{Experiment, Method};
 
 /// A spec whose values are read and not yet combined.
 pub(super) struct Draft {
@@ -23,6 +24,7 @@ pub(super) struct Draft {
     pub(super) seed: u64,
     pub(super) realizations: Realizations,
     pub(super) figures: Figures,
+    pub(super) experiment: Option<Experiment>,
     pub(super) base: Values,
     /// Origin of the base's value of each key, in the order of [`KEYS`].
     pub(super) origins: Vec<Origin>,
@@ -57,7 +59,7 @@ pub(super) fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<us
 }
 
 /// Keys at the top of a spec.
-const TOP: [&str; 15] = [
+const TOP: [&str; 16] = [
     "name",
     "seed",
     "realizations",
@@ -73,6 +75,7 @@ const TOP: [&str; 15] = [
     "sweep",
     "files",
     "auto_methods",
+    "experiment",
 ];
 
 /// Reads a whole spec. Nothing, with the faults added, if it is no TOML.
@@ -96,6 +99,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         realizations: Realizations::Exactly(DEFAULT),
         figures: Figures::default(),
         realizations_at: None,
+        experiment: None,
         base: Values::default(),
         origins: vec![Origin::Default; KEYS.len()],
         sweeps: Vec::new(),
@@ -128,6 +132,7 @@ pub(super) fn enter((key, span, written): Entry<'_, '_>, draft: &mut Draft, faul
             draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
         }
         "figures" => draft.figures = figures(written, faults).unwrap_or_default(),
+        "experiment" => draft.experiment = experiment(written, faults),
         "auto_methods" => {
             draft.auto_at = Some(written.span());
             draft.auto_methods = auto::methods(written, faults);

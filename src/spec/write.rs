@@ -47,6 +47,9 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
             }
         }
     }
+    if let Some(experiment) = &spec.experiment {
+        text.push_str(&super::experiment::toml(experiment));
+    }
     if !spec.files.is_empty() {
         writeln!(text, "\n[files]")?;
     }

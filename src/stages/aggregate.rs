@@ -4,6 +4,7 @@ use super::cycle::lattice;
 use super::cycle_input::{SurfaceRow, cycle_input, of_failed};
 use super::done::{Clock, Outcome};
 use super::error::incomplete;
+use super::measured_loop::{self, MeasuredLoop, measure_loop};
 use super::runner::{Context, Single, run_single};
 use super::surface::scale;
 use super::{StageError, Tally, datapackage};
@@ -16,6 +17,7 @@ use crate::store::commit::Written;
 use crate::store::{Check, Frame, commit, parquet};
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::path::Path;
 
 /// Aggregates the finished cycles; without `--partial`, all must be finished.
 pub(super) fn run(context: Context<'_>, cycles_check: Check) -> Result<Tally, StageError> {
@@ -81,6 +83,10 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     };
     let tables = [realizations, curves, avalanches, planned, methods, averaged];
     let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
+    if let Some(loops) = measured_loops(campaign)? {
+        files.push(write(&measured_loop::rows(&loops)?)?);
+        files.push(write(&measured_loop::steps(&loops)?)?);
+    }
     let finished: Vec<bool> = standings.iter().map(|standing| *standing == Standing::Done).collect();
     for (place, text) in datapackage::files(campaign, &finished) {
         let path = campaign.dir.join(place);
@@ -91,6 +97,21 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
         files.push(commit::commit_bytes("describe the tables in", &path, text.as_bytes())?);
     }
     Ok(files)
+}
+
+/// The measured loops of the spec, whose files must be as they were when the spec was read.
+fn measured_loops(campaign: &Campaign) -> Result<Option<Vec<MeasuredLoop>>, StageError> {
+    let spec = &campaign.spec;
+    let (Some(experiment), Some(options)) = (&spec.experiment, spec.loop_options()) else { return Ok(None) };
+    let one = |name: &String| {
+        let found = measure_loop(Path::new(name), &campaign.file_label(name), &options)?;
+        if spec.files.get(name) == Some(&found.digest) {
+            return Ok(found);
+        }
+        let why = "the file changed after the spec was read\nhelp: run the command again".to_owned();
+        Err(StageError::Loop { path: Path::new(name).to_owned(), why })
+    };
+    experiment.loops.iter().map(one).collect::<Result<_, _>>().map(Some)
 }
 
 /// Inputs of the aggregation: all cases, and the finished cycles.

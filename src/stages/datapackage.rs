@@ -18,7 +18,9 @@ pub(super) fn files(campaign: &Campaign, done: &[bool]) -> Described {
     let mut files = Described::new();
     let mut resources: Vec<Value> = Vec::new();
     // A table that is in no folder of a run is no part of one.
-    for table in TABLES.iter().filter(|table| table.file.contains('/')) {
+    let is_written =
+        |table: &Table| campaign.spec.experiment.is_some() || !table.name.starts_with("measured_");
+    for table in TABLES.iter().filter(|table| table.file.contains('/') && is_written(table)) {
         let Some(parts) = ids.of_table(table) else {
             resources.push(resource(table, table.name.to_owned(), table.file.to_owned(), schema(table)));
             continue;

@@ -46,6 +46,14 @@ pub enum StageError {
         /// Why, and what is allowed.
         why: String,
     },
+    /// A measured loop.
+    #[error("cannot import the loop {}: {why}", shown(path))]
+    Loop {
+        /// File.
+        path: PathBuf,
+        /// Why, and what is allowed.
+        why: String,
+    },
     /// The file of a measured surface, which is not in the form that it seems to be in.
     #[error(transparent)]
     Scan(StoreError),

@@ -3,13 +3,14 @@
 use super::contact_maps::contact_maps;
 use super::done::{Clock, Outcome};
 use super::error::incomplete;
+use super::experiment::beside;
 use super::explorer::explorer;
 use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
 use super::{StageError, Tally};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::figures::{Drawing, Panel, Tables, file, method_ratios, panels, sensitivity, table};
-use crate::report::{self, Failure, MethodFigures, Report, SingleCycle};
+use crate::report::{self, Failure, MeasuredLoops, MethodFigures, Report, SingleCycle};
 use crate::schema;
 use crate::spec::Figures;
 use crate::store::hdf5::{SurfaceHeader, read_header};
@@ -45,6 +46,7 @@ struct Drawings {
     cycles: Vec<SingleCycle>,
     methods: MethodFigures,
     sensitivity: Option<Drawing>,
+    measured_loops: Option<MeasuredLoops>,
 }
 
 impl Drawings {
@@ -63,6 +65,7 @@ impl Drawings {
                 maps: contact_maps(campaign, standings, methods)?,
             },
             sensitivity: sensitivity(cases, realizations)?,
+            measured_loops: beside(campaign, standings, cases)?,
         })
     }
 
@@ -74,14 +77,16 @@ impl Drawings {
             .chain(&self.methods.maps)
             .chain(&self.sensitivity)
             .map(|drawing| (drawing.stem, drawing.svg.as_str()));
-        let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle);
+        let measured = self.measured_loops.iter().map(|of| &of.panel);
+        let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle).chain(measured);
         panels.map(drawing).chain(others).chain(self.methods.ratios.as_ref().map(drawing))
     }
 
     /// All panels with the names of their sweeps; those of the single cycle have none.
     fn all_panels(&self) -> Vec<(String, Panel)> {
-        let cycle =
-            self.cycles.iter().flat_map(|cycle| &cycle.panels).map(|panel| (String::new(), panel.clone()));
+        let measured = self.measured_loops.iter().map(|of| &of.panel);
+        let single = self.cycles.iter().flat_map(|cycle| &cycle.panels).chain(measured);
+        let cycle = single.map(|panel| (String::new(), panel.clone()));
         self.panels.iter().cloned().chain(cycle).collect()
     }
 }
@@ -162,6 +167,7 @@ fn page(
         sensitivity: drawings.sensitivity.as_ref(),
         method_figures: &drawings.methods,
         scans: &scans(campaign)?,
+        measured_loops: drawings.measured_loops.as_ref(),
         sweeps: &sweeps(campaign),
         drawings: &drawings.panels,
         cycles: &drawings.cycles,

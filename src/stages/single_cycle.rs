@@ -26,16 +26,16 @@ const MAX_POINTS: u64 = 8192;
 const POINTS: usize = 120;
 
 /// A finished cycle with a load reversal.
-struct Chosen<'a> {
-    unit: &'a CycleUnit,
-    max_load: f64,
+pub(super) struct Chosen<'a> {
+    pub(super) unit: &'a CycleUnit,
+    pub(super) max_load: f64,
     /// True if a case with a larger mean Θ has no such cycle.
     has_larger: bool,
 }
 
 /// The first finished cycle of the case by a method with the largest mean Θ, at that load reversal;
 /// `None` without one that `fits`.
-fn choose<'a>(
+pub(super) fn choose<'a>(
     campaign: &'a Campaign,
     standings: &[Standing],
     cases: &Frame,

@@ -10,6 +10,7 @@ mod builder;
 pub mod commit;
 mod dataset;
 mod error;
+pub mod force_curve;
 mod frame;
 mod halfway;
 pub mod hdf5;

@@ -17,6 +17,16 @@ mod jkr_loop;
 #[path = "../examples/observe_path.rs"]
 #[expect(dead_code, reason = "the function main is not called")]
 mod observe_path;
+#[path = "../examples/probe_loop.rs"]
+#[expect(dead_code, reason = "the function main and some constants are not used")]
+mod probe_loop;
+
+#[test]
+fn reg_example_of_a_loop_of_a_probe() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/data/examples/probe_loop.csv")).unwrap();
+    assert_eq!(probe_loop::run().unwrap(), text, "write it again: cargo run --no-default-features --example probe_loop");
+    assert!(text.starts_with("# INVENTED DATA"));
+}
 
 #[test]
 fn law_example_of_a_jkr_loop() {

@@ -12,7 +12,7 @@ const PHYSICS: [(&str, &[&str]); 22] = [
     ("math", &[]),
     ("jkr", &[]),
     ("surface", &[]),
-    ("theory", &["jkr", "surface"]),
+    ("theory", &["math", "jkr", "surface"]),
     ("cycle", &[]),
     ("asperities", &["math", "jkr", "surface", "cycle"]),
     ("asperities::numerics", &[]),

@@ -30,6 +30,7 @@ mod path;
 mod periodogram;
 mod potential;
 mod printed;
+mod probe;
 mod properties;
 mod scan_filter;
 mod self_affine;

@@ -24,6 +24,8 @@ mod keys;
 #[cfg(feature = "stats")]
 mod labels;
 #[cfg(feature = "stats")]
+mod loops;
+#[cfg(feature = "stats")]
 mod losses;
 #[cfg(feature = "stats")]
 mod manifest;

@@ -1,6 +1,7 @@
 //! `import`: a measured surface as the model takes it, and what its spectrum says; and `export` of surfaces
 //! to other programs.
 
+mod loops;
 mod quality;
 mod range;
 mod text;
@@ -49,6 +50,9 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let refused =
         |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));
     recognize(&asked.file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
+    if loops::is_meant(asked) {
+        return loops::import(asked);
+    }
     let digest = digest_of_file(&asked.file).map_err(|error| refused(&error))?;
     let params = params(asked)?;
     if params.periodic && params.detrend != Detrend::Mean {

@@ -10,6 +10,7 @@
 pub mod approximate_jkr;
 pub mod estimates;
 pub mod flattening;
+pub mod probe;
 pub mod regime;
 
 use crate::PhysicsError;

@@ -14,7 +14,7 @@ pub(super) mod numbers;
 mod packing;
 mod stated;
 mod text;
-mod text_cells;
+pub(super) mod text_cells;
 mod text_columns;
 mod text_heading;
 mod text_points;

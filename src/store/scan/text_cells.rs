@@ -9,7 +9,7 @@ const SHOWN: usize = 24;
 
 /// Separator of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Separator {
+pub(in crate::store) enum Separator {
     /// Any number of spaces and tabs.
     Blank,
     /// One sign: nothing between two of them is a missing point.
@@ -18,7 +18,7 @@ pub(super) enum Separator {
 
 impl Separator {
     /// Separator of the numbers of a line.
-    pub(super) fn of(line: &str) -> Self {
+    pub(in crate::store) fn of(line: &str) -> Self {
         let line = &outside_quotes(line);
         let one_each = |sign: char| line.split(sign).all(|cell| !cell.trim().contains(char::is_whitespace));
         if line.contains(';') {
@@ -33,13 +33,13 @@ impl Separator {
     }
 
     /// Separator of the words of a line, which may contain blanks themselves.
-    pub(super) fn of_words(line: &str) -> Self {
+    pub(in crate::store) fn of_words(line: &str) -> Self {
         let line = &outside_quotes(line);
         ['\t', ';', ','].into_iter().find(|sign| line.contains(*sign)).map_or(Self::Blank, Self::Sign)
     }
 
     /// Cells of a line without the blanks and quotation marks around them.
-    pub(super) fn cells(self, line: &str) -> Vec<&str> {
+    pub(in crate::store) fn cells(self, line: &str) -> Vec<&str> {
         let mut quoted = false;
         let mut ends = |sign: char| {
             quoted ^= sign == '"';
@@ -88,20 +88,20 @@ fn with_comma(cell: &str) -> Option<f64> {
 }
 
 /// True for a cell of a row: a number, or a missing point.
-pub(super) fn is_value(cell: &str) -> bool {
+pub(in crate::store) fn is_value(cell: &str) -> bool {
     is_missing(cell) || cell.parse::<f64>().is_ok() || with_comma(cell).is_some()
 }
 
 /// Decimal signs of the numbers of a file.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Decimals {
+pub(in crate::store) struct Decimals {
     point: bool,
-    pub(super) comma: bool,
+    pub(in crate::store) comma: bool,
 }
 
 impl Decimals {
     /// A height; NaN where a point is missing.
-    pub(super) fn number(&mut self, cell: &str) -> Result<f64, Cause> {
+    pub(in crate::store) fn number(&mut self, cell: &str) -> Result<f64, Cause> {
         if is_missing(cell) {
             return Ok(f64::NAN);
         }
