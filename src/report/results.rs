@@ -29,6 +29,21 @@ const IN_SI: [Quantity; 6] = [
     ("w_{opening} [J/m²]", "work_opening_j_m2", true),
 ];
 
+/// Results of a probe.
+const OF_PROBE: [Quantity; 6] = [
+    ("F_{po} [N]", "pull_off_load_n", true),
+    ("Θ [J]", "loss_j", true),
+    ("w_{approach} [J/m²]", "work_approach_j_m2", true),
+    ("w_{retraction} [J/m²]", "work_retraction_j_m2", true),
+    ("w(F_{po}) [J/m²]", "work_pull_off_j_m2", true),
+    ("w(Θ) [J/m²]", "work_loss_j_m2", true),
+];
+
+const OF_PROBE_NOTE: &str = "Apparent works of adhesion of a smooth sphere of the radius of the probe: \
+    w_{approach} and w_{retraction} by JKR fits of the radius √(A/π) against load on both branches, w(F_{po}) \
+    from the pull-off force F_{po}/(1.5πR), w(Θ) from the dissipated energy. The residuals of the fits are in \
+    the table `realizations`.";
+
 const IN_SI_NOTE: &str = "Per nominal area A_{0}. Work of adhesion of closing w_{closing}: energy that the \
     surfaces give from separation, by way of the load reversal, to zero load on the unloading path. Work of \
     adhesion of opening w_{opening}: work from there to separation. w_{opening} − w_{closing} = Θ/A_{0}. \
@@ -51,6 +66,10 @@ pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         (table(cases, "results", &RESULTS)?)
         p { (prose(IN_SI_NOTE)) } "\n"
         (table(cases, "results-si", &IN_SI)?)
+        @if cases.frame.f64_or_null("probe_radius_m")?.iter().any(Option::is_some) {
+            p { (prose(OF_PROBE_NOTE)) } "\n"
+            (table(cases, "results-probe", &OF_PROBE)?)
+        }
     })
 }
 

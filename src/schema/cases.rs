@@ -104,6 +104,26 @@ const SPREADS: &[&[Column]] = &[
     over_realizations!("loss_over_adhesion", "1", "dissipated energy Θ/(A0 Δγ)", ""),
     over_realizations!("work_closing_j_m2", "J/m^2", "work of adhesion of closing per nominal area", ""),
     over_realizations!("work_opening_j_m2", "J/m^2", "work of adhesion of opening per nominal area", ""),
+    over_realizations!("loss_j", "J", "dissipated energy Θ", ""),
+    over_realizations!(
+        "work_pull_off_j_m2",
+        "J/m^2",
+        "apparent work of adhesion from the pull-off force",
+        ""
+    ),
+    over_realizations!("work_loss_j_m2", "J/m^2", "apparent work of adhesion from Θ", ""),
+    over_realizations!(
+        "work_approach_j_m2",
+        "J/m^2",
+        "apparent work of adhesion of the JKR fit on approach",
+        ""
+    ),
+    over_realizations!(
+        "work_retraction_j_m2",
+        "J/m^2",
+        "apparent work of adhesion of the JKR fit on retraction",
+        ""
+    ),
     over_realizations!(
         "loss_dk",
         "1",
@@ -226,6 +246,7 @@ const VALIDITY: &[&[Column]] = &[
         "grid points of boundary elements per shortest wavelength",
         ""
     ),
+    mean_and_worst!("probe_extent", "max", "Maximum", "distance of a contact edge from the apex over L", ""),
     mean_and_worst!("texture_aspect", "max", "Maximum", "texture aspect ratio of a measured surface", ""),
     mean_and_worst!(
         "filter_overshoot",

@@ -89,6 +89,13 @@ pub const OF_LOAD: &[Column] = &[
     shared("pull_off_jkr_curve"),
     shared("loss_jkr_curve"),
     shared("loss_touched"),
+    shared("work_pull_off_j_m2"),
+    shared("work_loss_j_m2"),
+    shared("work_approach_j_m2"),
+    shared("work_retraction_j_m2"),
+    shared("fit_residual_approach_n"),
+    shared("fit_residual_retraction_n"),
+    shared("probe_extent"),
 ];
 
 /// Deng–Kesari estimates by the equations in use: corrected, and with the errata a2 and a3.

@@ -121,6 +121,56 @@ const RESULTS: &[Column] = &[
     )
     .or_null(),
     real(
+        "work_pull_off_j_m2",
+        "J/m^2",
+        "Apparent work of adhesion of the probe from its pull-off force, F_po/(1.5 π R); null without a \
+         probe or tension",
+    )
+    .or_null()
+    .from("Johnson, Kendall and Roberts 1971"),
+    real(
+        "work_loss_j_m2",
+        "J/m^2",
+        "Apparent work of adhesion of the probe from Θ, as of a smooth sphere under control of the \
+         displacement; null without a probe, and where Θ is not positive",
+    )
+    .or_null()
+    .from("Eq A1"),
+    real(
+        "work_approach_j_m2",
+        "J/m^2",
+        "Apparent work of adhesion of the probe on approach: JKR fit of the radius sqrt(A/π) against load on \
+         loading, with E* given; null without a probe, and where the fit has none",
+    )
+    .or_null()
+    .from("Johnson, Kendall and Roberts 1971"),
+    real(
+        "work_retraction_j_m2",
+        "J/m^2",
+        "Apparent work of adhesion of the probe on retraction: the fit on unloading; null likewise",
+    )
+    .or_null()
+    .from("Johnson, Kendall and Roberts 1971"),
+    real(
+        "fit_residual_approach_n",
+        "N",
+        "Root-mean-square residual of the load of the JKR fit on approach; null without it",
+    )
+    .or_null(),
+    real(
+        "fit_residual_retraction_n",
+        "N",
+        "Root-mean-square residual of the load of the JKR fit on retraction; null without it",
+    )
+    .or_null(),
+    real(
+        "probe_extent",
+        "1",
+        "Largest distance of a contact edge from the apex of the probe at load reversal, over the side L: \
+         the surface is that of the sphere up to 0.3; null without a probe",
+    )
+    .or_null(),
+    real(
         "loss_dk",
         "1",
         "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the moments of \

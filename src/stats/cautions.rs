@@ -32,7 +32,7 @@ const fn warning(
 /// All warnings by severity, which is the order of their codes in the column `caution`: results outside the
 /// model, then results that depend on a rule of the model, then incomplete or inaccurate results, then small
 /// samples.
-pub const CAUTIONS: [Caution; 27] = [
+pub const CAUTIONS: [Caution; 28] = [
     warning(
         "sticky",
         "near full contact",
@@ -104,6 +104,13 @@ pub const CAUTIONS: [Caution; 27] = [
         "F_po follows from the strength Δγ/ε, the range ε of `interaction_range_m`, and not from the \
          roughness.",
         "Reduce `max_load` below full contact, or quote F_po with ε.",
+    ),
+    warning(
+        "extent",
+        "large contact of the probe",
+        "contact reaches {} of the side from the apex of the probe",
+        "Beyond 0.3 of the side the surface is not that of the sphere.",
+        "Use a larger square (`surface.length_m`), a smaller load or a smaller probe.",
     ),
     warning(
         "coarse_steps",
@@ -293,7 +300,7 @@ impl Limit {
 }
 
 /// All limits. The limit of the Tabor parameter applies to Wu's criterion only, and only with adhesion.
-pub const LIMITS: [Limit; 18] = [
+pub const LIMITS: [Limit; 19] = [
     Limit::at_least("sticky", "persson_tosatti_realised_mean", SEPARATE),
     Limit::at_most("area", "area_at_max_load_mean", LARGE_AREA),
     Limit::at_least("conformed", "conformity_realised_mean", BRIDGED),
@@ -303,6 +310,7 @@ pub const LIMITS: [Limit; 18] = [
     Limit::at_least("tabor", "tabor_min_min", 2.0),
     Limit::at_most("overshoot", "filter_overshoot_max", 0.01),
     Limit::at_least("coarse", "elements_per_wavelength_min", 16.0),
+    Limit::at_most("extent", "probe_extent_max", LARGEST_EXTENT),
     Limit::at_most("texture", "texture_aspect_max", 2.0),
     Limit::at_most("outliers", "outlier_share_max", 0.0),
     Limit::at_most("lines", "line_jump_share_max", 0.01),
@@ -346,6 +354,9 @@ const OF_ASPERITIES: [&str; 9] = [
 
 /// Largest share of the work of adhesion for the roughness of a table below the shortest wavelength.
 pub const MOST_LEFT_OUT: f64 = 0.05;
+
+/// Largest distance of a contact edge from the apex of a probe, over the side of the square.
+const LARGEST_EXTENT: f64 = 0.3;
 
 /// Shortest step of boundary elements, of the rms height, above which events are not located.
 pub const LONGEST_STEP: f64 = 0.05;

@@ -46,6 +46,18 @@ const PER_AREA: Results = [
     ("w_opening", "work_opening_j_m2", 1e3),
 ];
 
+/// Results of a probe, in newtons, joules and mJ/m².
+const OF_PROBE: Results = [
+    ("F_po", "pull_off_load_n", 1.0),
+    ("Θ", "loss_j", 1.0),
+    ("w_approach", "work_approach_j_m2", 1e3),
+    ("w_retract", "work_retraction_j_m2", 1e3),
+];
+
+const OF_PROBE_HEADER: &str = "\
+Probe: F_po [N], Θ [J]; w_approach and w_retract [mJ/m²], apparent works of
+adhesion of JKR fits of the contact radius against load.";
+
 const PER_AREA_HEADER: &str = "\
 Per nominal area: F_po [kPa]; Θ, w_closing and w_opening [mJ/m²], the works of
 adhesion from separation to zero load and back, w_opening - w_closing = Θ.";
@@ -113,10 +125,19 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
         let title = if name.is_empty() { "case".to_owned() } else { name.clone() };
         let rows = listing_of(cases, &name)?;
         compared |= rows.iter().any(|listed| listed.is_reference);
-        lines.extend(table(cases, &rows, &title, &RESULTS)?);
-        lines.push(String::new());
-        lines.extend(PER_AREA_HEADER.lines().map(str::to_owned));
-        lines.extend(table(cases, &rows, &title, &PER_AREA)?);
+        lines.extend(table(cases, &rows.iter().collect::<Vec<_>>(), &title, &RESULTS)?);
+        let radii = cases.f64_or_null("probe_radius_m")?;
+        let on_probe = |listed: &&Listed| radii[listed.row].is_some();
+        let (probes, flats): (Vec<&Listed>, Vec<&Listed>) = rows.iter().partition(on_probe);
+        for (of, header, results) in
+            [(flats, PER_AREA_HEADER, &PER_AREA), (probes, OF_PROBE_HEADER, &OF_PROBE)]
+        {
+            if !of.is_empty() {
+                lines.push(String::new());
+                lines.extend(header.lines().map(str::to_owned));
+                lines.extend(table(cases, &of, &title, results)?);
+            }
+        }
         let rows: Vec<usize> = rows.iter().map(|listed| listed.row).collect();
         lines.extend(
             verdicts(cases, methods, &rows)?
@@ -135,7 +156,7 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
 }
 
 /// The rows of a sweep under their headings.
-fn table(cases: &Frame, rows: &[Listed], title: &str, results: &Results) -> Result<Vec<String>, StatsError> {
+fn table(cases: &Frame, rows: &[&Listed], title: &str, results: &Results) -> Result<Vec<String>, StatsError> {
     let mut columns = Vec::new();
     for ((heading, name, factor), width) in results.iter().zip(&WIDTHS[3..]) {
         let cells = rows.iter().map(|listed| mean_sd(cases, name, *factor, listed.row));

@@ -17,7 +17,7 @@ use indicatif::HumanBytes;
 use serde_json::{Map, Value, json};
 
 /// Results in the printed text; JSON has all columns.
-const RESULTS: [&str; 16] = [
+const RESULTS: [&str; 20] = [
     "pull_off_load",
     "pull_off_load_n",
     "pull_off_pressure_pa",
@@ -32,6 +32,10 @@ const RESULTS: [&str; 16] = [
     "loss_over_adhesion",
     "work_closing_j_m2",
     "work_opening_j_m2",
+    "work_approach_j_m2",
+    "work_retraction_j_m2",
+    "work_pull_off_j_m2",
+    "work_loss_j_m2",
     "loss_ratio_dk",
     "audit_gap",
 ];

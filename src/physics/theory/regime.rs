@@ -109,7 +109,9 @@ impl Regime {
             (Self::Flattened, Method::Asperities) => {
                 "Adhesion alone closes the contact: the asperity model fails; use boundary elements"
             }
-            (Self::Flattened, _) => "Adhesion alone closes the contact: boundary elements reach full contact",
+            (Self::Flattened, _) => {
+                "Adhesion alone flattens the roughness: boundary elements reach full contact, with a probe inside its contact"
+            }
         }
     }
 }

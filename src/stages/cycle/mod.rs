@@ -1,5 +1,6 @@
 //! cycle: load and unload one case on one surface, and write every step.
 
+mod apparent;
 mod asperities;
 mod constants;
 mod elements;
