@@ -48,11 +48,11 @@ fn paragraph(surface: &GeneratedSurface, label: &str, ratios: &[f64]) -> String 
         let range = if low == high { percent(low) } else { format!("{} to {}", percent(low), percent(high)) };
         let limit = percent(MOST_LEFT_OUT);
         let effect = if high <= MOST_LEFT_OUT {
-            format!("it is taken off Δγ (limit {limit} %)")
+            format!("it is subtracted from Δγ (limit {limit} %)")
         } else if low > MOST_LEFT_OUT {
-            format!("above {limit} % it is not taken off Δγ: warning left_out")
+            format!("above {limit} % it is not subtracted from Δγ: warning left_out")
         } else {
-            format!("it is taken off Δγ up to {limit} %, above it causes the warning left_out")
+            format!("it is subtracted from Δγ up to {limit} %, above it causes the warning left_out")
         };
         text += &format!(" Shorter ones of the table have U_el/Δγ = {range} %: {effect}.");
     }
