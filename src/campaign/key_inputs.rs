@@ -339,10 +339,15 @@ fn of_tabulated(spec: &Spec, surface: &GeneratedSurface) -> Value {
     let TabulatedSpectrum { file, kind, convention, unit, series, .. } = &surface.tabulated;
     let mut reads = plain(surface);
     REPLACED.iter().for_each(|name| remove(&mut reads, name));
-    reads["spectrum"] = json!({
-        "blake3": spec.files.get(file), "kind": kind, "convention": convention, "unit": unit,
-        "series": series, "table_version": TABLE_VERSION,
-    });
+    let of_table = [
+        ("blake3", json!(spec.files.get(file))),
+        ("spectrum_kind", json!(kind)),
+        ("spectrum_convention", json!(convention)),
+        ("spectrum_unit", json!(unit)),
+        ("spectrum_series", json!(series)),
+        ("table_version", json!(TABLE_VERSION)),
+    ];
+    of_table.into_iter().for_each(|(name, value)| reads[name] = value);
     reads
 }
 

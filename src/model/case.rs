@@ -8,6 +8,7 @@ use super::{
 use crate::physics::surface::psd_table::PsdTable;
 use crate::physics::surface::shape::Shape;
 use crate::physics::surface::spectrum::Spectrum;
+use crate::physics::theory::flattening::flattening;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -311,6 +312,12 @@ impl GeneratedSurface {
                 table: self.tabulated.table.clone(),
             },
         }
+    }
+
+    /// Elastic energy of flattening the target spectrum over E* \[m\].
+    #[must_use]
+    pub fn flattening_m(&self) -> f64 {
+        flattening(&self.spectrum(), 1.0).whole_j_m2
     }
 
     /// True if its spectrum is a table.

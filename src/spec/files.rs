@@ -77,7 +77,7 @@ pub(super) fn named(
         faults.add(
             span,
             message,
-            "remove the line, or name the file as surface.file (surface.spectrum) exactly as it is written here"
+            "remove the line, or name the file as surface.file or .spectrum exactly as it is written here"
                 .to_owned(),
         );
     }

@@ -110,8 +110,24 @@ fn split(line: &str) -> Vec<&str> {
     let line = line.trim();
     match [';', '\t', ','].into_iter().find(|separator| line.contains(*separator)) {
         Some(separator) => line.split(separator).map(|cell| cell.trim().trim_matches('"').trim()).collect(),
-        None => line.split_whitespace().map(|cell| cell.trim_matches('"')).collect(),
+        None => words(line),
     }
+}
+
+/// Cells between spaces; a unit in brackets belongs to the name before it.
+fn words(line: &str) -> Vec<&str> {
+    let mut cells: Vec<&str> = Vec::new();
+    let mut start = 0;
+    for word in line.split_whitespace() {
+        let at = word.as_ptr() as usize - line.as_ptr() as usize;
+        if word.starts_with(['(', '[']) && cells.pop().is_some() {
+            cells.push(&line[start..at + word.len()]);
+        } else {
+            start = at;
+            cells.push(word.trim_matches('"'));
+        }
+    }
+    cells
 }
 
 /// Columns of a table.

@@ -41,7 +41,7 @@ impl Scale {
     }
 
     /// Material of a cycle: the elastic energy of roughness below the shortest wavelength of a tabulated
-    /// spectrum is taken off the work of adhesion, where it is small.
+    /// spectrum is subtracted from the work of adhesion, where it is small.
     pub(super) fn material(self, material: &Material) -> Material {
         let energy_j_m2 = material.contact_modulus_pa * self.left_out_m;
         let mut material = *material;

@@ -176,15 +176,21 @@ fn law_the_stage_of_a_key_reads_it() {
     let measured =
         format!("name = \"x\"\nsurface.file = \"a.h5\"\n{corrected}\nmodel.boundary = \"isolated\"\nfiles = {{ \"a.h5\" = \"{digest}\" }}");
     let elements = "name = \"x\"\nsurface.magnification = 8\nmodel.method = \"boundary_elements\"";
-    let campaigns = ["name = \"x\"", &measured, elements].map(|text| Campaign::new(spec(text), PathBuf::from("x")));
+    let shape =
+        "name = \"x\"\nsurface.longest_wavelength_m = 5e-4\nsurface.roll_off_m = 1e-4\nsurface.aspect_ratio = 2\nsurface.angle_deg = 30";
+    let table = format!("name = \"x\"\nsurface.spectrum = \"a.csv\"\nfiles = {{ \"a.csv\" = \"{digest}\" }}");
+    let campaigns = ["name = \"x\"", &measured, elements, shape, &table].map(|text| Campaign::new(spec(text), PathBuf::from("x")));
     let preimages = campaigns.map(|campaign| campaign.cycle_preimages(&campaign.cycles[0]));
     let page = reference();
     for path in keys() {
         let row = page.lines().find(|line| line.starts_with(&format!("| `{path}` |"))).unwrap();
         let stage = row.trim_end_matches(" |").rsplit(" | ").next().unwrap();
         // Of a file, its content is read.
-        let pointer =
-            if path == "surface.file" { "/reads/surface/blake3".to_owned() } else { format!("/reads/{}", path.replace('.', "/")) };
+        let pointer = if ["surface.file", "surface.spectrum"].contains(&path.as_str()) {
+            "/reads/surface/blake3".to_owned()
+        } else {
+            format!("/reads/{}", path.replace('.', "/"))
+        };
         assert!(preimages.iter().any(|stages| stages[stage].pointer(&pointer).is_some()), "{path} is not read by {stage}");
     }
 }

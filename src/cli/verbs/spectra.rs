@@ -2,7 +2,6 @@
 
 use crate::campaign::Campaign;
 use crate::model::GeneratedSurface;
-use crate::physics::theory::flattening::flattening;
 use crate::stats::{MOST_LEFT_OUT, significant};
 use crate::text::{visible, wrapped};
 use std::f64::consts::TAU;
@@ -30,7 +29,7 @@ pub(super) fn text(campaign: &Campaign) -> String {
 
 fn paragraph(surface: &GeneratedSurface, label: &str, ratios: &[f64]) -> String {
     let spectrum = surface.spectrum();
-    let (moments, energy) = (spectrum.moments(), flattening(&spectrum, 1.0).whole_j_m2);
+    let (moments, energy) = (spectrum.moments(), surface.flattening_m());
     let [longest, shortest] = spectrum.band_1_m().map(|wavenumber| significant(TAU / wavenumber, 4));
     let mut text = format!(
         "{}: {}. Wavelengths from {shortest} to {longest} m have h_rms = {} m, h'_rms = {}, Laplacian \
@@ -48,11 +47,11 @@ fn paragraph(surface: &GeneratedSurface, label: &str, ratios: &[f64]) -> String 
         let range = if low == high { percent(low) } else { format!("{} to {}", percent(low), percent(high)) };
         let limit = percent(MOST_LEFT_OUT);
         let effect = if high <= MOST_LEFT_OUT {
-            format!("it is taken off Δγ (limit {limit} %)")
+            format!("it is subtracted from Δγ (limit {limit} %)")
         } else if low > MOST_LEFT_OUT {
-            format!("above {limit} % it is not taken off Δγ: warning left_out")
+            format!("above {limit} % it is not subtracted from Δγ: warning left_out")
         } else {
-            format!("it is taken off Δγ up to {limit} %, above it causes the warning left_out")
+            format!("it is subtracted from Δγ up to {limit} %, above it causes the warning left_out")
         };
         text += &format!(" Shorter ones of the table have U_el/Δγ = {range} %: {effect}.");
     }
