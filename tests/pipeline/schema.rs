@@ -23,6 +23,7 @@ fn promised(name: &str) -> &'static str {
         ("_m", "m"),
         ("_n", "N"),
         ("_j", "J"),
+        ("_s", "s"),
     ]
     .iter()
     .find(|(end, _)| stem.ends_with(end))
