@@ -211,7 +211,7 @@ pub(super) struct ImportArguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options for measured loops")]
 pub(super) struct LoopArguments {
-    /// The file is a loop [default: if its heading names force and displacement]
+    /// Read the file as a loop [default: by its heading]
     #[arg(long = "loop")]
     pub(super) is_loop: bool,
     /// Column of the force

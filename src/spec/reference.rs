@@ -120,7 +120,7 @@ fn top() -> String {
 /// The table of measured loops.
 fn experiment() -> String {
     use super::experiment::{MEANINGS, MODULUS, RADIUS, STIFFNESS, WORDS};
-    let mut section = "\n## `[experiment]`\n\nMeasured loops for comparison with the simulated ones: \
+    let mut section = "\n## `[experiment]`\n\nMeasured loops for comparison with the simulated ones:\n\
          [My loop next to the simulated one](howto_loop.md).\n\n| key | type | unit | range | default \
          |\n|---|---|---|---|---|\n"
         .to_owned();

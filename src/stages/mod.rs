@@ -37,6 +37,7 @@ mod task;
 mod verdict;
 
 use crate::constants::Constants;
+pub use crate::physics::theory::probe::Estimate;
 pub use compare::{Comparison, compare};
 pub use cost::Cost;
 pub use cycle::unload_again;

@@ -23,7 +23,10 @@ fn promised(name: &str) -> &'static str {
         ("_m", "m"),
         ("_n", "N"),
         ("_j", "J"),
+        ("_m_n", "m/N"),
+        ("_n_m", "N/m"),
         ("_deg", "deg"),
+        ("_s", "s"),
     ]
     .iter()
     .find(|(end, _)| stem.ends_with(end))

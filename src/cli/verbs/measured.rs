@@ -50,9 +50,13 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let refused =
         |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));
     recognize(&asked.file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
-    if loops::is_meant(asked) {
-        return loops::import(asked);
-    }
+    if loops::is_meant(asked) { loops::import(asked) } else { surface(asked) }
+}
+
+/// Imports a measured surface.
+fn surface(asked: &ImportArguments) -> Result<u8, Fault> {
+    let refused =
+        |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));
     let digest = digest_of_file(&asked.file).map_err(|error| refused(&error))?;
     let params = params(asked)?;
     if params.periodic && params.detrend != Detrend::Mean {

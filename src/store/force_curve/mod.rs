@@ -243,62 +243,21 @@ impl Chosen {
 
     fn curve(&self, table: &Table, options: &LoopOptions) -> Result<ForceCurve, String> {
         let columns = &table.columns;
-        let unit = |place: usize, given: &str, option: &str, known: &str| -> Result<String, String> {
-            let own = columns[place].unit.clone();
-            match own {
-                Some(own) if !given.is_empty() && own != given => Err(format!(
-                    "the column {:?} has the unit {own:?}, but {given:?} was given\nhelp: remove {option}",
-                    columns[place].text
-                )),
-                Some(own) => Ok(own),
-                None if given.is_empty() => Err(format!(
-                    "the column {:?} has no unit\nhelp: give it with {option}, or in the heading; units are \
-                     {known}",
-                    columns[place].text
-                )),
-                None => Ok(given.to_owned()),
-            }
-        };
-        let unknown = |place: usize, unit: &str, option: &str, known: &str| {
-            format!(
-                "the column {:?} is in {unit:?}, which is not read\nhelp: give a unit with {option}: {known}",
-                columns[place].text
-            )
-        };
         let said =
             |what: &str, place: usize, unit: &str| format!("{what}: {:?} in {unit}", columns[place].text);
-        let force_unit = unit(self.force, &options.force_unit, "--force-unit (force_unit)", FORCES)?;
-        // A deflection of a spring of known stiffness is a force.
-        let spring = options.machine_stiffness_n_m.zip(metres(&force_unit)).map(|(k, length)| k * length);
-        let force = newtons(&force_unit).or(spring).ok_or_else(|| {
-            if metres(&force_unit).is_some() {
-                format!(
-                    "the column {:?} is a deflection in {force_unit}, not a force\nhelp: give the stiffness \
-                     of the cantilever with --machine-stiffness, in N/m",
-                    columns[self.force].text
-                )
-            } else {
-                unknown(self.force, &force_unit, "--force-unit (force_unit)", FORCES)
-            }
-        })?;
-        let way_unit = unit(
-            self.displacement,
-            &options.displacement_unit,
-            "--displacement-unit (displacement_unit)",
-            LENGTHS,
-        )?;
-        let way = metres(&way_unit).ok_or_else(|| {
-            unknown(self.displacement, &way_unit, "--displacement-unit (displacement_unit)", LENGTHS)
-        })?;
+        let (force_unit, force) = self.force(columns, options)?;
+        let option = "--displacement-unit (displacement_unit)";
+        let column = &columns[self.displacement];
+        let way_unit = unit(column, &options.displacement_unit, option, LENGTHS)?;
+        let way = metres(&way_unit).ok_or_else(|| unknown(column, &way_unit, option, LENGTHS))?;
         let mut read =
             vec![said("force", self.force, &force_unit), said("displacement", self.displacement, &way_unit)];
         let radius = self.radius.map(|place| {
-            let known = format!("{LENGTHS}; {AREAS}");
-            let unit = unit(place, &options.radius_unit, "--radius-unit (radius_unit)", &known)?;
+            let (known, option) = (format!("{LENGTHS}; {AREAS}"), "--radius-unit (radius_unit)");
+            let unit = unit(&columns[place], &options.radius_unit, option, &known)?;
             let area = square_metres(&unit);
             let factor = area.or_else(|| metres(&unit));
-            let factor =
-                factor.ok_or_else(|| unknown(place, &unit, "--radius-unit (radius_unit)", &known))?;
+            let factor = factor.ok_or_else(|| unknown(&columns[place], &unit, option, &known))?;
             read.push(said(if area.is_some() { "contact area" } else { "contact radius" }, place, &unit));
             table.radii(place, factor, area.is_some())
         });
@@ -312,6 +271,46 @@ impl Chosen {
             columns: read,
         })
     }
+
+    /// Unit of the force and its size \[N\]. A deflection of a spring of known stiffness is a force.
+    fn force(&self, columns: &[Column], options: &LoopOptions) -> Result<(String, f64), String> {
+        let (column, option) = (&columns[self.force], "--force-unit (force_unit)");
+        let unit = unit(column, &options.force_unit, option, FORCES)?;
+        let spring = options.machine_stiffness_n_m.zip(metres(&unit)).map(|(k, length)| k * length);
+        match newtons(&unit).or(spring) {
+            Some(size) => Ok((unit, size)),
+            None if metres(&unit).is_some() => Err(format!(
+                "the column {:?} is a deflection in {unit}, not a force\nhelp: give the stiffness of the \
+                 cantilever with --machine-stiffness (machine_stiffness_n_m), in N/m",
+                column.text
+            )),
+            None => Err(unknown(column, &unit, option, FORCES)),
+        }
+    }
+}
+
+/// Unit of a column, by its heading or by an option.
+fn unit(column: &Column, given: &str, option: &str, known: &str) -> Result<String, String> {
+    match &column.unit {
+        Some(own) if !given.is_empty() && own != given => Err(format!(
+            "the column {:?} has the unit {own:?}, but {given:?} was given\nhelp: remove {option}",
+            column.text
+        )),
+        Some(own) => Ok(own.clone()),
+        None if given.is_empty() => Err(format!(
+            "the column {:?} has no unit\nhelp: give it with {option}, or in the heading; units are \
+             {known}",
+            column.text
+        )),
+        None => Ok(given.to_owned()),
+    }
+}
+
+fn unknown(column: &Column, unit: &str, option: &str, known: &str) -> String {
+    format!(
+        "the column {:?} is in {unit:?}, which is not read\nhelp: give a unit with {option}: {known}",
+        column.text
+    )
 }
 
 impl Table {

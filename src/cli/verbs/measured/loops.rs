@@ -5,8 +5,8 @@ use super::super::{Fault, failed, say};
 use crate::cli::ImportArguments;
 use crate::lengths::sizes;
 use crate::model::{Baseline, Choice as _, Compression, LoopOptions};
-use crate::physics::theory::probe::Estimate;
-use crate::stages::{MeasuredLoop, half_width, measure_loop};
+
+use crate::stages::{Estimate, MeasuredLoop, half_width, measure_loop};
 use crate::stats::significant;
 use crate::store::force_curve::is_force_curve;
 use crate::store::parquet::write_table;
