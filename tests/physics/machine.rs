@@ -363,6 +363,11 @@ fn reg_probe_and_load_that_have_no_result_are_refused() {
         let error = summits_on_probe(&sphere(1e-3), Probe { radius_m }, 1e-3, Boundary::Periodic).unwrap_err();
         assert!(matches!(error, PhysicsError::Domain { quantity: "the radius of the probe [m]", .. }), "{error}");
     }
+    for compliance_m_n in [-1.0, f64::NAN, f64::INFINITY] {
+        let options = options(ALONE, Machine { compliance_m_n, ..Machine::default() }, 0.5);
+        let error = Asperities::of_summits(&sphere(1e-3), 1e-3, 1e-8, &ADHESIVE, &[1e-6], &options).map(|_| ()).unwrap_err();
+        assert!(matches!(error, PhysicsError::Domain { quantity: "the compliance of the machine [m/N]", .. }), "{error}");
+    }
     // A load that the sphere reaches only where its contact spans the square.
     let options = options(ALONE, LOAD, 0.5);
     let error = Asperities::of_summits(&sphere(1e-4), 1e-4, 1e-8, &ADHESIVE, &[10.0], &options).unwrap().run().unwrap_err();

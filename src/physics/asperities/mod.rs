@@ -102,8 +102,8 @@ impl Asperities {
     /// surface; the options put them on a probe.
     ///
     /// # Errors
-    /// No asperities; a radius of the probe that is not positive; Tabor parameters below 2 with Wu's
-    /// criterion.
+    /// No asperities; a radius of the probe that is not positive; a negative compliance; Tabor parameters
+    /// below 2 with Wu's criterion.
     pub fn of_summits(
         summits: &[Summit],
         length_m: f64,
@@ -112,6 +112,7 @@ impl Asperities {
         max_loads: &[f64],
         options: &Options,
     ) -> Result<Self, PhysicsError> {
+        check_compliance(options.machine.compliance_m_n)?;
         let Options { rules, probe, machine, approach_step, contacts, numerics } = *options;
         let on_probe = match probe {
             Some(probe) => summits_on_probe(summits, probe, length_m, rules.boundary)?,
@@ -131,6 +132,19 @@ impl Asperities {
             settings: Settings { max_loads: max_loads.to_vec(), approach_step, contacts, rest_every },
         })
     }
+}
+
+/// Refuses a compliance \[m/N\] that is negative or not a number.
+fn check_compliance(value: f64) -> Result<(), PhysicsError> {
+    if value >= 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(PhysicsError::Domain {
+        action: "the contact on a machine",
+        quantity: "the compliance of the machine [m/N]",
+        value,
+        allowed: "zero or a positive, finite number",
+    })
 }
 
 impl Method for Asperities {
