@@ -363,7 +363,7 @@ impl Spec {
 
     /// Radius of the probe of the measured loops \[m\].
     fn probe_radius_m(&self) -> Option<f64> {
-        self.experiment.as_ref()?.options.probe_radius_m
+        self.experiment.as_ref()?.options.probe_radius_m.or(self.base.radius_m)
     }
 
     /// The spec with every default written out: reading it again gives an equal spec.

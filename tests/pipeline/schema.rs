@@ -16,6 +16,7 @@ fn promised(name: &str) -> &'static str {
     [
         ("_j_m2", "J/m^2"),
         ("_n_m", "N/m"),
+        ("_m_n", "m/N"),
         ("_1_m2", "1/m^2"),
         ("_1_m", "1/m"),
         ("_m2", "m^2"),
@@ -23,8 +24,6 @@ fn promised(name: &str) -> &'static str {
         ("_m", "m"),
         ("_n", "N"),
         ("_j", "J"),
-        ("_m_n", "m/N"),
-        ("_n_m", "N/m"),
         ("_deg", "deg"),
         ("_s", "s"),
     ]
