@@ -13,6 +13,7 @@ macro_rules! pages {
 pages!(
     tutorial,
     howto_scan,
+    howto_probe,
     howto_spectrum,
     howto_loop,
     howto_sweep,

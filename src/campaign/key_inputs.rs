@@ -9,7 +9,7 @@ use crate::model::{GeneratedSurface, MeasuredSurface, MethodOptions, SurfaceSour
 use crate::physics::asperities::Asperities;
 use crate::physics::cycle::Method;
 use crate::physics::elements::Elements;
-use crate::spec::{Case, CaseParams, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, Spec};
+use crate::spec::{Case, CaseParams, OPTIONAL_TABLES, REPLACED, Spec};
 use serde_json::{Map, Value, json};
 
 /// Version of the evaluation of measured loops.
@@ -243,8 +243,7 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     let mut take = |name: &'static str| (name, tables[name].take());
     let [material, mut model, elements, mut cycle] =
         ["material", "model", "boundary_elements", "cycle"].map(&mut take);
-    let further = OPTIONAL_TABLES.map(&mut take).into_iter().filter(|(name, table)| *table != unsaid(name));
-    remove_all(&mut cycle.1, &OTHER_LOADS);
+    let further = OPTIONAL_TABLES.map(&mut take).into_iter().filter(|(_, table)| !table.is_null());
     let of_method = match &params.method {
         MethodOptions::Asperities(_) => {
             model.1["method_version"] = json!(asperities_version());
@@ -261,15 +260,6 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     of_method.into_iter().chain(further).collect()
 }
 
-/// A table that the spec does not have.
-fn unsaid(table: &str) -> Value {
-    plain(&CaseParams::default())[table].take()
-}
-
-fn remove_all(value: &mut Value, names: &[&str]) {
-    names.iter().for_each(|name| remove(value, name));
-}
-
 /// Parameters of a case in its identity. Those of the asperity model are the same as before there was another
 /// method.
 pub(super) fn of_whole_case(spec: &Spec, params: &CaseParams) -> Value {
@@ -278,12 +268,6 @@ pub(super) fn of_whole_case(spec: &Spec, params: &CaseParams) -> Value {
     if params.asperities().is_some() {
         remove(&mut reads, "boundary_elements");
         remove(&mut reads["model"], "method");
-    }
-    remove_all(&mut reads["cycle"], &OTHER_LOADS);
-    for table in OPTIONAL_TABLES {
-        if reads[table] == unsaid(table) {
-            remove(&mut reads, table);
-        }
     }
     reads
 }

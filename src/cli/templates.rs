@@ -7,16 +7,18 @@ pub(super) enum Template {
     Sweep,
     Scan,
     Spectrum,
+    Probe,
     Full,
 }
 
 impl Template {
     /// All templates, each with its name and its purpose.
-    pub(super) const ALL: [(Self, &'static str, &'static str); 5] = [
+    pub(super) const ALL: [(Self, &'static str, &'static str); 6] = [
         (Self::Quickstart, "quickstart", "a soft and a stiff contact, generated surfaces: runs in seconds"),
         (Self::Sweep, "sweep", "parameter sweeps around a reference case"),
         (Self::Scan, "scan", "a measured surface"),
         (Self::Spectrum, "spectrum", "a tabulated power spectral density, with an example psd.csv"),
+        (Self::Probe, "probe", "a spherical probe, in newtons and metres: runs in seconds"),
         (Self::Full, "full", "every key with its default"),
     ];
 
@@ -32,6 +34,7 @@ impl Template {
             Self::Sweep => include_str!("templates/sweep.toml"),
             Self::Scan => include_str!("templates/scan.toml"),
             Self::Spectrum => include_str!("templates/spectrum.toml"),
+            Self::Probe => include_str!("templates/probe.toml"),
             Self::Full => include_str!("templates/full.toml"),
         }
     }

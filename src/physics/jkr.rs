@@ -256,10 +256,11 @@ impl Asperity {
         radius
     }
 
-    /// Contact radius \[m\] on the branch that is stable under control of the load, at a load `F` \[N\] from the
-    /// pull-off load on: `a³ = (3R/(4E*)) (F + 3πRΔγ + sqrt(6πRΔγF + (3πRΔγ)²))`.
+    /// Contact radius \[m\] on the branch that is stable under control of the load, at a load `F` \[N\]:
+    /// `a³ = (3R/(4E*)) (F + 3πRΔγ + sqrt(6πRΔγF + (3πRΔγ)²))`.
     ///
-    /// `None` below the pull-off load. Johnson, Kendall & Roberts, Proc. R. Soc. A 324, 301 (1971).
+    /// `None` at a tension above the pull-off force. Johnson, Kendall & Roberts, Proc. R. Soc. A 324, 301
+    /// (1971).
     #[must_use]
     pub fn radius_at_load(&self, load: f64) -> Option<f64> {
         let pull = 3.0 * PI * self.radius * self.adhesion;

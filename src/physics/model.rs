@@ -57,8 +57,8 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// JKR length `(RΔγ²/E*²)^⅓` \[m\], the unit of the penetration of a smooth sphere: it leaves contact at a
-    /// penetration of −1.61 of it.
+    /// JKR length `(RΔγ²/E*²)^⅓` \[m\], the unit of the penetration of a smooth sphere: it leaves contact at
+    /// a penetration of −1.61 of it.
     #[must_use]
     pub fn jkr_length_m(&self, material: &Material) -> f64 {
         (self.radius_m * material.adhesion_length_m().powi(2)).cbrt()
@@ -97,8 +97,8 @@ impl Default for Machine {
     }
 }
 
-/// Displacement of a point load by its images on a square lattice of spacing L and the balancing uniform load,
-/// in `−F/(πE*L)`: `−4ζ(½)β(½)`, with Riemann's and Dirichlet's functions.
+/// Displacement of a point load by its images on a square lattice of spacing L and the balancing uniform
+/// load, in `−F/(πE*L)`: `−4ζ(½)β(½)`, with Riemann's and Dirichlet's functions.
 pub const CELL_CONSTANT: f64 = 3.900_264_920_001_956;
 
 /// A choice that a spec makes by a word.

@@ -40,9 +40,9 @@ const OF_PROBE: [Quantity; 6] = [
 ];
 
 const OF_PROBE_NOTE: &str = "Apparent works of adhesion of a smooth sphere of the radius of the probe: \
-    w_{approach} and w_{retraction} by JKR fits of the radius √(A/π) against load on both branches, w(F_{po}) \
-    from the pull-off force F_{po}/(1.5πR), w(Θ) from the dissipated energy. The residuals of the fits are in \
-    the table `realizations`.";
+    w_{approach} and w_{retraction} by JKR fits of the radius √(A/π) against load on both branches, \
+    w(F_{po}) from the pull-off force F_{po}/(1.5πR), w(Θ) from the dissipated energy. The residuals of the \
+    fits are in the table `realizations`.";
 
 const IN_SI_NOTE: &str = "Per nominal area A_{0}. Work of adhesion of closing w_{closing}: energy that the \
     surfaces give from separation, by way of the load reversal, to zero load on the unloading path. Work of \

@@ -27,8 +27,8 @@ pub fn probe_refusal(
     let largest_m = LARGEST_RADIUS_SHARE * length_m;
     (radius_m > largest_m).then(|| {
         let problem = format!(
-            "the contact of the probe is larger than the square allows: a smooth sphere has a contact radius \
-             of {radius_m:.3e} m at the maximum load, and at most {LARGEST_RADIUS_SHARE} L = {largest_m:.3e} m \
+            "the contact of the probe is too large for the square: a smooth sphere has a contact radius of \
+             {radius_m:.3e} m at the maximum load, and at most {LARGEST_RADIUS_SHARE} L = {largest_m:.3e} m \
              can be used"
         );
         let side_m = radius_m / LARGEST_RADIUS_SHARE;

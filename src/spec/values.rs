@@ -1,7 +1,7 @@
 //! A value for each key of a spec, and the case that follows from them.
 
 use super::Value;
-use super::keys::{KEYS, TABLES};
+use super::keys::{KEYS, Key, OPTIONAL_TABLES, OTHER_LOADS, TABLES};
 use crate::model::{
     AsperityOptions, Attraction, AttractionKind, CaseParams, ElementOptions, GeneratedSurface, LoadingPath,
     Machine, Material, MeasuredSurface, Method, MethodOptions, Nucleation, Opening, Probe, Slip, Substrate,
@@ -206,12 +206,19 @@ impl From<&CaseParams> for Values {
 }
 
 impl Serialize for Values {
-    /// The tables of a spec with every key.
+    /// The tables of a spec with every key; tables that a spec need not have and loads in other units where
+    /// they say something.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let default = Self::default();
+        let says = |key: &Key| (key.get)(self) != (key.get)(&default);
         let keys = |table: &'static str| KEYS.iter().filter(move |key| key.table == table);
-        let values =
-            |table| keys(table).map(|key| (key.name, (key.get)(self))).collect::<BTreeMap<&str, Value>>();
-        serializer.collect_map(TABLES.iter().map(|table| (*table, values(table))))
+        let is_shown = |key: &&Key| !OTHER_LOADS.contains(&key.name) || says(key);
+        let values = |table| {
+            let shown = keys(table).filter(is_shown);
+            shown.map(|key| (key.name, (key.get)(self))).collect::<BTreeMap<&str, Value>>()
+        };
+        let is_table = |table: &&'static str| !OPTIONAL_TABLES.contains(table) || keys(table).any(says);
+        serializer.collect_map(TABLES.into_iter().filter(is_table).map(|table| (table, values(table))))
     }
 }
 

@@ -1,20 +1,23 @@
 //! Works of adhesion of a loop: of closing and of opening.
 //!
 //! The reference is the state of zero load on the unloading path. The work of closing is the energy that the
-//! surfaces give from separation, by way of the load reversal, to that state; the work of opening is the energy
-//! that it takes from there to separation:
+//! surfaces give from separation, by way of the load reversal, to that state; the work of opening is the
+//! energy that it takes from there to separation:
 //!
 //! `w_close A0 = −(∫_loading F dΔ + ∫_(F>0, unloading) F dΔ)`, `w_open A0 = ∫_(F<0, unloading) F dΔ`,
 //!
-//! with the normal load F \[N\], positive in compression, the mean penetration Δ \[m\] and the nominal area A0
-//! \[m²\]. Their difference is `Θ/A0` exactly. Both are equal without dissipation, and equal to `Δγ A/A0` for flat
-//! surfaces. Without hysteresis in compression, they are the areas under the tensile parts of the two branches.
+//! with the normal load F \[N\], positive in compression, the mean penetration Δ \[m\] and the nominal area
+//! A0 \[m²\]. Their difference is `Θ/A0` exactly. Both are equal without dissipation, and equal to `Δγ A/A0`
+//! for flat surfaces. Without hysteresis in compression, they are the areas under the tensile parts of the
+//! two branches.
 
 use super::cycle::Branch;
 
-/// Energies of closing and of opening \[J\], from the work up to the load reversal \[J\] and the steps after it.
+/// Energies of closing and of opening \[J\], from the work up to the load reversal \[J\] and the steps after
+/// it.
 ///
-/// Between two steps the load is linear in Δ. Without tension the energy of opening is 0. Nothing without steps.
+/// Between two steps the load is linear in Δ. Without tension the energy of opening is 0. Nothing without
+/// steps.
 pub(super) fn closing_and_opening_j(at_reversal_j: f64, unloading: &Branch) -> Option<[f64; 2]> {
     let last_j = *unloading.work_j.last()?;
     let to_zero_j = work_to_zero_load_j(unloading).unwrap_or(last_j);

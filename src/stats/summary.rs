@@ -126,18 +126,6 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
         let rows = listing_of(cases, &name)?;
         compared |= rows.iter().any(|listed| listed.is_reference);
         lines.extend(table(cases, &rows.iter().collect::<Vec<_>>(), &title, &RESULTS)?);
-        let radii = cases.f64_or_null("probe_radius_m")?;
-        let on_probe = |listed: &&Listed| radii[listed.row].is_some();
-        let (probes, flats): (Vec<&Listed>, Vec<&Listed>) = rows.iter().partition(on_probe);
-        for (of, header, results) in
-            [(flats, PER_AREA_HEADER, &PER_AREA), (probes, OF_PROBE_HEADER, &OF_PROBE)]
-        {
-            if !of.is_empty() {
-                lines.push(String::new());
-                lines.extend(header.lines().map(str::to_owned));
-                lines.extend(table(cases, &of, &title, results)?);
-            }
-        }
         let rows: Vec<usize> = rows.iter().map(|listed| listed.row).collect();
         lines.extend(
             verdicts(cases, methods, &rows)?
@@ -145,6 +133,7 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
                 .flat_map(|sentence| wrapped(&format!("Verdict: {sentence}"))),
         );
     }
+    lines.extend(in_si(cases)?);
     let mut head = vec![HEADER];
     head.extend(compared.then_some(REFERENCE));
     lines.extend(match shown {
@@ -153,6 +142,32 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
     });
     lines.push(String::new());
     Ok(format!("{}\n{}", head.join("\n"), lines.join("\n")))
+}
+
+/// The results of all sweeps in SI units: per nominal area, and of probes.
+fn in_si(cases: &Frame) -> Result<Vec<String>, StatsError> {
+    let radii = cases.f64_or_null("probe_radius_m")?;
+    let mut lines = Vec::new();
+    for (is_probe, header, results) in
+        [(false, PER_AREA_HEADER, &PER_AREA), (true, OF_PROBE_HEADER, &OF_PROBE)]
+    {
+        let mut tables = Vec::new();
+        for name in sweeps(cases)? {
+            let title = if name.is_empty() { "case".to_owned() } else { name.clone() };
+            let rows = listing_of(cases, &name)?;
+            let of: Vec<&Listed> =
+                rows.iter().filter(|listed| radii[listed.row].is_some() == is_probe).collect();
+            if !of.is_empty() {
+                tables.extend(table(cases, &of, &title, results)?);
+            }
+        }
+        if !tables.is_empty() {
+            lines.push(String::new());
+            lines.extend(header.lines().map(str::to_owned));
+            lines.extend(tables);
+        }
+    }
+    Ok(lines)
 }
 
 /// The rows of a sweep under their headings.

@@ -15,7 +15,7 @@ use clap::error::ErrorKind;
 use hysteron::campaign::Campaign;
 use hysteron::cli::{Arguments, generated};
 use hysteron::schema::TABLES;
-use hysteron::spec::{CaseParams, Spec, reference};
+use hysteron::spec::{CaseParams, OTHER_LOADS, Spec, reference};
 use serde_json::{Value, json};
 
 use crate::bench::{code, stderr, stdout};
@@ -178,8 +178,9 @@ fn law_the_stage_of_a_key_reads_it() {
     let elements = "name = \"x\"\nsurface.magnification = 8\nmodel.method = \"boundary_elements\"";
     let shape =
         "name = \"x\"\nsurface.longest_wavelength_m = 5e-4\nsurface.roll_off_m = 1e-4\nsurface.aspect_ratio = 2\nsurface.angle_deg = 30";
+    let sphere = "name = \"x\"\nprobe.radius_m = 1e-3\nmachine.stiffness_n_m = 10\nsubstrate.thickness_m = 1e-3\nmodel.method = \"boundary_elements\"\nsurface.magnification = 8\ncycle.max_load = [1e-4]";
     let table = format!("name = \"x\"\nsurface.spectrum = \"a.csv\"\nfiles = {{ \"a.csv\" = \"{digest}\" }}");
-    let campaigns = ["name = \"x\"", &measured, elements, shape, &table].map(|text| Campaign::new(spec(text), PathBuf::from("x")));
+    let campaigns = ["name = \"x\"", &measured, elements, shape, &table, sphere].map(|text| Campaign::new(spec(text), PathBuf::from("x")));
     let preimages = campaigns.map(|campaign| campaign.cycle_preimages(&campaign.cycles[0]));
     let page = reference();
     for path in keys() {
@@ -188,6 +189,8 @@ fn law_the_stage_of_a_key_reads_it() {
         // Of a file, its content is read.
         let pointer = if ["surface.file", "surface.spectrum"].contains(&path.as_str()) {
             "/reads/surface/blake3".to_owned()
+        } else if OTHER_LOADS.contains(&path.trim_start_matches("cycle.")) {
+            "/reads/cycle/max_load".to_owned()
         } else {
             format!("/reads/{}", path.replace('.', "/"))
         };

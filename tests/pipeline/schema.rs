@@ -67,11 +67,11 @@ fn law_names_are_unique_plain_words_and_documented() {
     }
 }
 
-/// Seven results, nine numbers of theories, and what the events lost; its two branches and every kind of event; what tells how far to trust the row. The losses are
+/// Seven results, six of them in SI units and five of a probe, nine numbers of theories, and what the events lost; its two branches and every kind of event; what tells how far to trust the row. The losses are
 /// there in both units.
 #[test]
 fn val_cases_have_statistics_of_every_result() {
-    assert_eq!(CASES.columns.len(), 2 + 41 + 1 + (12 + 6) * 4 + (2 + EVENT_KINDS.len()) * 2 * 4 + 23 * 2 + 7);
+    assert_eq!(CASES.columns.len(), 2 + 47 + 1 + (12 + 11 + 6) * 4 + (2 + EVENT_KINDS.len()) * 2 * 4 + 24 * 2 + 7);
 }
 
 /// Columns by which tables are joined.
@@ -92,7 +92,7 @@ fn law_every_table_names_what_its_rows_belong_to() {
         assert_eq!(CYCLES.column(column.name), Some(column));
         count += 1;
     }
-    assert_eq!(count, 2 + 38);
+    assert_eq!(count, 2 + 44);
 }
 
 #[test]

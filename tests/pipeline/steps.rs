@@ -109,6 +109,7 @@ pub fn write_counts(path: &Path, steps: &[Step], [contacts, covered, touching]: 
         .f64("stiffness_n_m", vec![None; steps.len()])
         .f64("stiffness", vec![None; steps.len()])
         .f64("reversal_load", reversals)
+        .f64("machine_displacement_m", vec![None; steps.len()])
         .build()
         .unwrap();
     write_table(path, &frame, &[]).unwrap();
@@ -137,6 +138,8 @@ pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[
             ("interaction_range_m", 1e-9.into()),
             ("interaction", "spots".into()),
             ("boundary", "periodic".into()),
+            ("far_field", "cell".into()),
+            ("control", "displacement".into()),
             ("coalescence", "cover".into()),
             ("jump_in", "wu".into()),
             ("as_printed", "".into()),

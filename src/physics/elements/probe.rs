@@ -2,9 +2,9 @@
 //!
 //! The surface of a sphere of radius R around its apex is `z(r) = −r²/(2R)`, for contact radii small compared
 //! with R. On a periodic square of side L it must be smooth across the edges as well: a cusp there would be
-//! spread by the grid over all points. Its slope is therefore `−(r/R) w(r)` with a weight `w` that falls from
-//! 1 at `r = 0.3 L` to 0 at `0.5 L`, by a polynomial with two continuous derivatives. Inside 0.3 L the surface
-//! is that of the sphere; contact beyond is an error or a warning of the caller.
+//! spread by the grid over all points. Its slope is therefore `−(r/R) w(r)` with a weight
+//! `w` that falls from 1 at `r = 0.3 L` to 0 at `0.5 L`, by a polynomial with two continuous derivatives.
+//! Inside 0.3 L the surface is that of the sphere; contact beyond is an error or a warning of the caller.
 
 /// Radius over the side of the square up to which the surface is that of the sphere.
 pub const SPHERE_SHARE: f64 = 0.3;
@@ -34,7 +34,8 @@ pub fn height(r: f64) -> f64 {
     -(0.5 * SPHERE_SHARE * SPHERE_SHARE + span * (SPHERE_SHARE * plain + span * moment))
 }
 
-/// Distance of a point of a grid of `points` points along a side from the middle of the square, over the side.
+/// Distance of a point of a grid of `points` points along a side from the middle of the square, over the
+/// side.
 #[must_use]
 pub fn distance(row: usize, column: usize, points: usize) -> f64 {
     let middle = (points / 2) as f64;

@@ -1,13 +1,14 @@
 //! A rough rigid surface against an elastic half-space, its states and their energy.
 //!
-//! With the displacement `u`, the heights `z ≤ 0` from the highest point and the displacement `Δ` of the rigid
-//! surface, 0 where the undeformed surfaces touch, the gap is `g = u − Δ − z` and the energy
+//! With the displacement `u`, the heights `z ≤ 0` from the highest point and the displacement `Δ` of the
+//! rigid surface, 0 where the undeformed surfaces touch, the gap is `g = u − Δ − z` and the energy
 //! `Π(u; Δ) = ½ u·K u + Σ V(g)`. The load is `F = dΠ/dΔ = −Σ V'(g)`.
 //!
-//! On a half-space `u` has zero mean, and `Δ` is the mean penetration. With a compliance `c` in series, of the
-//! periodic cell, a layer or the machine, the mean of `u` is `cF`, the energy `½cF²` of the spring is a part
-//! of Π, and `Δ` is the displacement at the far end of the spring: the contact is at the mean penetration
-//! `Δ − cF`, and events happen at fixed `Δ`.
+//! On a half-space `u` has zero mean, and `Δ` is the mean penetration. With a compliance
+//! `c` in series, of the periodic cell, a layer or the machine, the mean of `u` is `cF`, the energy `½cF²` of
+//! the spring is a part of Π, and
+//! `Δ` is the displacement at the far end of the spring: the contact is at the mean penetration `Δ −
+//! cF`, and events happen at fixed `Δ`.
 
 use super::grid::half_space::{HalfSpace, Operator, Waves};
 use super::grid::medium::Medium;
@@ -71,8 +72,8 @@ pub enum Nucleation {
 /// A state of the contact. Fields have one value per point, row by row.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// Displacement Δ of the rigid surface, 0 where the undeformed surfaces touch \[dx\]: the mean penetration
-    /// if the mean of the displacement u is fixed.
+    /// Displacement Δ of the rigid surface, 0 where the undeformed surfaces touch \[dx\]: the mean
+    /// penetration if the mean of the displacement u is fixed.
     pub mean_penetration: f64,
     /// Displacement u \[dx\], with zero mean if that is fixed.
     pub displacement: Vec<f64>,
@@ -114,9 +115,9 @@ impl Problem {
         self.law.bond(bonding, gap)
     }
 
-    /// Surface and half-space of this problem without attraction, moved without the machine's spring. The wall
-    /// is the spring of the law of the band-limited crack for every law: the exponential repulsion of Morse's
-    /// law overflows in iterations without a limit of their length.
+    /// Surface and half-space of this problem without attraction, moved without the machine's spring. The
+    /// wall is the spring of the law of the band-limited crack for every law: the exponential repulsion of
+    /// Morse's law overflows in iterations without a limit of their length.
     ///
     /// # Errors
     /// Not enough memory.

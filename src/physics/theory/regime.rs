@@ -110,7 +110,8 @@ impl Regime {
                 "Adhesion alone closes the contact: the asperity model fails; use boundary elements"
             }
             (Self::Flattened, _) => {
-                "Adhesion alone flattens the roughness: boundary elements reach full contact, with a probe inside its contact"
+                "Adhesion alone flattens the roughness: boundary elements reach full contact, with a probe \
+                 inside its contact"
             }
         }
     }

@@ -80,8 +80,8 @@ fn e2e_the_example_of_each_warning_has_it() {
             shown.insert(code);
         }
     }
-    // No spec is known that gives the first, and the others need a file or an anisotropic spectrum.
-    let without = ["unconverged", "texture", "overshoot", "outliers", "lines", "noise", "tip", "left_out"];
+    // No spec is known that gives the first, and the others need a file, an anisotropic spectrum or a probe.
+    let without = ["unconverged", "texture", "overshoot", "outliers", "lines", "noise", "tip", "left_out", "extent"];
     let all: BTreeSet<String> = CAUTIONS.iter().map(|kind| kind.code.to_owned()).filter(|code| !without.contains(&code.as_str())).collect();
     assert_eq!(shown, all);
 }

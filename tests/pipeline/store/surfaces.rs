@@ -180,9 +180,12 @@ fn val_the_file_is_as_the_contract_says() {
         names,
         [
             "amplitudes",
+            "angle_deg",
+            "aspect_ratio",
             "hurst",
             "key",
             "length_m",
+            "longest_wavelength_m",
             "magnification",
             "nayak_parameter",
             "normalization",
@@ -192,8 +195,10 @@ fn val_the_file_is_as_the_contract_says() {
             "rms_curvature_1_m",
             "rms_height_m",
             "rms_slope",
+            "roll_off_m",
             "schema_version",
             "seed",
+            "tabulated_left_out_m",
             "target_rms_height_m",
         ]
     );

@@ -88,7 +88,7 @@ pub(crate) struct Spring {
     pub(crate) moves_as_one: bool,
     /// Number of doublings by which increments may be longer.
     pub(super) doublings: u32,
-    /// What it adds to the unit of the output steps of D \[m\].
+    /// Addition to the unit of the output steps of D \[m\].
     pub(super) output_m: f64,
 }
 

@@ -49,8 +49,8 @@ pub(super) const INCREMENTS: f64 = 2000.0;
 pub(super) const OUTPUT_STEPS: f64 = 10.0;
 
 impl Problem {
-    /// Puts the contact on a machine, with the largest load of the cycle \[N\]; after the unit and the numerical
-    /// choices, which it reads.
+    /// Puts the contact on a machine, with the largest load of the cycle \[N\]; after the unit and the
+    /// numerical choices, which it reads.
     #[must_use]
     pub fn on_machine(self, machine: &Machine, most_load_n: f64) -> Self {
         let cell = CELL_CONSTANT * self.material.compliance() / self.length_m;

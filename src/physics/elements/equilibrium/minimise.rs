@@ -293,8 +293,8 @@ impl Minimiser {
         }
     }
 
-    /// Load of the present state: pressure less the gradient, which is pressure and tension. With a fixed mean
-    /// displacement the mean pressure is 0.
+    /// Load of the present state: pressure less the gradient, which is pressure and tension. With a fixed
+    /// mean displacement the mean pressure is 0.
     fn load(&self, problem: &Problem, state: &State) -> f64 {
         if problem.half_space.fixes_mean() {
             return -self.centre * self.slopes.len() as f64;

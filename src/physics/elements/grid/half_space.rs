@@ -25,8 +25,8 @@ use std::sync::Arc;
 
 /// Stiffness that the spectral preconditioner adds, in E*/dx.
 const ADDED_STIFFNESS: f64 = 0.15;
-/// Least stiffness of a mean displacement in the preconditioner, times the side \[E*\]: that of a contact of an
-/// eighth of the side. A softer machine does not make the surface softer, which is held by the contact.
+/// Minimum stiffness of a mean displacement in the preconditioner, times the side \[E*\]: that of a contact
+/// of an eighth of the side. A softer machine does not make the surface softer, which is held by the contact.
 const STIFF_MEAN: f64 = 0.25;
 /// Columns of wavevectors in a block, and rows in a group.
 const BLOCK: usize = 8;

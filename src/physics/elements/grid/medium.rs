@@ -1,6 +1,7 @@
 //! The elastic medium: a half-space or a layer bonded to a rigid base, and the compliance in series with it.
 //!
-//! Under a pressure `p(q)` the surface of a layer of thickness h, bonded to a rigid base, has the displacement
+//! Under a pressure `p(q)` the surface of a layer of thickness h, bonded to a rigid base, has the
+//! displacement
 //!
 //! `u(q) = (2/(E* q)) S(qh) p(q)`,
 //! `S(s) = [(3 − 4ν) sinh 2s − 2s] / [(3 − 4ν) cosh 2s + 2s² + 5 − 12ν + 8ν²]`

@@ -234,8 +234,8 @@ impl<'a> CycleRun<'a> {
             ..Step::default()
         };
         let Work { bend, across, .. } = work_between(on_loop(from), on_loop(&reached));
-        // The trapezoid of the contact has no part of the machine's spring, and the bend is the same for both.
-        // A soft machine moves by much more than the contact, which its stiffness does not resolve.
+        // The trapezoid of the contact has no part of the machine's spring, and the bend is the same for
+        // both. A soft machine moves by much more than the contact, which its stiffness does not resolve.
         let is_soft = self.problem.machine_compliance * from.stiffness.max(reached.stiffness) > SOFT;
         let bend = if is_soft { 0.0 } else { bend };
         let moved = reached.penetration() - from.penetration();

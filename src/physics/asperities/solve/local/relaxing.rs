@@ -27,7 +27,7 @@ impl LocalProblem {
     /// Moves all members along their branches by one change of penetration `s` \[m\], after a change of state
     /// has changed their load from `load_n`: `s + c(F(s) − load_n) = 0`.
     ///
-    /// A soft spring moves the whole contact at once where its load is not that of the contact. The
+    /// A soft spring moves all contacts at once where its load is not that of the contact. The
     /// relaxation of the contacts begins from there.
     pub(crate) fn follow_spring(&mut self, problem: &Problem, load_n: f64) {
         if !problem.spring.moves_as_one {
