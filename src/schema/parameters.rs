@@ -380,10 +380,10 @@ const LIST: [Parameter; COUNT] = [
         |case| case.params.probe.map(|probe| Number(probe.radius_m)),
     ),
     parameter(
-        real("machine_compliance_m_n", "m/N", "Compliance c of the machine; null for a stiff one").or_null(),
+        real("machine_compliance_m_n", "m/N", "Compliance c of the machine; 0 for a stiff one"),
         ["c", "c [m/N]"],
         31,
-        |case| Some(case.params.machine.compliance_m_n).filter(|c| *c > 0.0).map(Number),
+        |case| Some(Number(case.params.machine.compliance_m_n)),
     ),
     parameter(
         text(

@@ -140,7 +140,8 @@ const RESULTS: &[Column] = &[
         "work_approach_j_m2",
         "J/m^2",
         "Apparent work of adhesion of the probe on approach: JKR fit of the radius sqrt(A/π) against load on \
-         loading, with E* given; null without a probe, and where the fit has none",
+         loading, with E* given; null without a probe, on a layer, and where the residual is above 10 % of \
+         the maximum load",
     )
     .or_null()
     .from("Johnson, Kendall and Roberts 1971"),

@@ -95,9 +95,18 @@ fn sources(cases: &[Case]) -> impl Iterator<Item = Source<'_>> {
     })
 }
 
+/// Place of the name of a file in the text, not in a comment.
+fn place(name: &str, text: &str) -> usize {
+    let is_in_comment = |at: usize| {
+        let line = &text[text[..at].rfind('\n').map_or(0, |end| end + 1)..at];
+        line.trim_start().starts_with('#') || line.contains(" #")
+    };
+    text.match_indices(name).map(|(at, _)| at).find(|at| !is_in_comment(*at)).unwrap_or_default()
+}
+
 /// Reports a fault of a file at its name in the text.
 fn blame(name: &str, text: &str, message: String, help: String, faults: &mut Faults<'_>) {
-    let at = if faults.is_full() { 0 } else { text.find(name).unwrap_or_default() };
+    let at = if faults.is_full() { 0 } else { place(name, text) };
     faults.add(&(at..at + name.len().min(text.len() - at)), message, help);
 }
 
@@ -211,7 +220,7 @@ fn loops(
                 spec.files.insert(found, digest);
             }
             Err(Refusal { problem, help }) => {
-                let at = if faults.is_full() { 0 } else { text.find(name.as_str()).unwrap_or_default() };
+                let at = if faults.is_full() { 0 } else { place(name, text) };
                 let message = format!("the measured loop \"{name}\" cannot be read: {problem}");
                 faults.add(&(at..at + name.len().min(text.len() - at)), message, help);
             }

@@ -373,13 +373,13 @@ pub(super) static KEYS: &[Key] = &[
         slip: Some((1e-6, "micrometres")), note: "R, radius of the probe; 0 for a flat surface",
     }),
     key!(machine.compliance_m_n in machine.compliance_m_n, "c", "Compliance of the machine: the controlled \
-         displacement is Δ + cF."; number Limits {
+         displacement is Δ + cF. Not read with `control = \"load\"`."; number Limits {
         low: 0.0, above: false, high: 1e9, unit: " m/N", unit_name: "metres per newton", slip: None,
         note: "c, compliance of the machine; 0 for a stiff one",
     }),
     key!(machine.stiffness_n_m in stiffness_n_m, "1/c", "Stiffness of the machine, instead of \
-         `compliance_m_n`. 0: not given."; optional number Limits {
-        low: 0.0, above: false, high: 1e15, unit: " N/m", unit_name: "newtons per metre", slip: None,
+         `compliance_m_n`. Not read with `control = \"load\"`."; optional number Limits {
+        low: 1e-9, above: false, high: 1e15, unit: " N/m", unit_name: "newtons per metre", slip: None,
         note: "1/c, stiffness of the machine, for example that of a cantilever",
     }),
     key!(machine.compliance in machine.far_field, "", "Elastic body at a distance from the contact. The \

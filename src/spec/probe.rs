@@ -6,7 +6,7 @@ use super::keys::{Limits, find};
 use super::number::short;
 use super::values::Values;
 use super::walk::{Origin, written};
-use crate::model::{CaseParams, Control, FarField, Material, Method, Probe};
+use crate::model::{CaseParams, Coalescence, Control, FarField, Material, Method, Probe};
 use crate::physics::elements::probe::SPHERE_SHARE;
 use crate::physics::jkr::Asperity;
 
@@ -94,19 +94,36 @@ fn check_loads(case: &CaseParams, values: &Values, origins: &[Origin], faults: &
 fn check_machine(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
     let help = "give one of them";
     exclude(["machine.compliance_m_n", "machine.stiffness_n_m"], help, origins, faults);
-    if case.machine.control == Control::Load
-        && case.machine.compliance_m_n > 0.0
-        && let Some(span) =
-            latest(&["machine.control", "machine.compliance_m_n", "machine.stiffness_n_m"], origins)
+    if case.machine.far_field == FarField::HalfSpace
+        && case.probe.is_none()
+        && let Some(span) = latest(&["machine.compliance"], origins)
     {
-        let message = "under control of the load the compliance of the machine does not act";
-        let help = "remove the compliance or stiffness, or write control = \"displacement\"";
+        let message = "`machine.compliance = \"half_space\"` needs a probe: a flat surface has contacts all \
+                       over the square";
+        let help = "give probe.radius_m, or write compliance = \"cell\"";
+        faults.add(&span, message.to_owned(), help.to_owned());
+    }
+    if case.machine.control == Control::Load
+        && case.asperities().is_some_and(|options| options.coalescence == Coalescence::Merge)
+        && let Some(span) = latest(&["machine.control", "model.coalescence", "model.method"], origins)
+    {
+        let message = "under control of the load asperities cannot merge: they do in jumps, after they have \
+                       overlapped, and the pull-off force is up to a third too small";
+        let help = "write model.coalescence = \"cover\" or \"none\", or method = \"boundary_elements\"";
         faults.add(&span, message.to_owned(), help.to_owned());
     }
 }
 
 fn check_substrate(case: &CaseParams, values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
     if case.substrate.is_none() {
+        if let Some(span) = latest(&["substrate.poisson_ratio"], origins) {
+            let help = "give substrate.thickness_m, or remove the key".to_owned();
+            faults.add(
+                &span,
+                "`substrate.poisson_ratio` is that of a layer, which has no thickness".to_owned(),
+                help,
+            );
+        }
         return;
     }
     if values.method == Method::Asperities

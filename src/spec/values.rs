@@ -3,9 +3,9 @@
 use super::Value;
 use super::keys::{KEYS, Key, OPTIONAL_TABLES, OTHER_LOADS, TABLES};
 use crate::model::{
-    AsperityOptions, Attraction, AttractionKind, CaseParams, ElementOptions, GeneratedSurface, LoadingPath,
-    Machine, Material, MeasuredSurface, Method, MethodOptions, Nucleation, Opening, Probe, Slip, Substrate,
-    SurfaceSource,
+    AsperityOptions, Attraction, AttractionKind, CaseParams, Control, ElementOptions, GeneratedSurface,
+    LoadingPath, Machine, Material, MeasuredSurface, Method, MethodOptions, Nucleation, Opening, Probe, Slip,
+    Substrate, SurfaceSource,
 };
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -107,7 +107,10 @@ impl Values {
         };
         let poisson_ratio = self.poisson_ratio;
         let substrate = self.thickness_m.map(|thickness_m| Substrate { thickness_m, poisson_ratio });
-        let compliance_m_n = self.stiffness_n_m.map_or(self.machine.compliance_m_n, f64::recip);
+        // Under control of the load the spring of the machine does not act.
+        let is_spring = self.machine.control == Control::Displacement;
+        let spring_m_n = self.stiffness_n_m.map_or(self.machine.compliance_m_n, f64::recip);
+        let compliance_m_n = if is_spring { spring_m_n } else { 0.0 };
         CaseParams {
             surface,
             probe: self.radius_m.map(|radius_m| Probe { radius_m }),

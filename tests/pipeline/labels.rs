@@ -159,7 +159,8 @@ fn law_all_numbers_of_a_column_have_one_notation() {
             .fold(whole.clone(), |frame, (row, loss)| replaced(&replaced(&frame, "loss_mean", row, *loss), "loss_sd", row, 0.1 * loss));
         let text = summary(&frame, None, Shown::All).unwrap();
         let head = text.lines().find(|line| line.starts_with("adhesion")).unwrap().to_owned();
-        let cells = text.lines().filter(|line| line.starts_with("Δγ")).map(|line| line.split_whitespace().rev().nth(1).unwrap().to_owned());
+        let cells =
+            text.lines().filter(|line| line.starts_with("Δγ")).take(3).map(|line| line.split_whitespace().rev().nth(1).unwrap().to_owned());
         (head, cells.collect::<Vec<_>>())
     };
     let (head, cells) = text([4.6e-7, 8.9e-6, 1.53e-3]);

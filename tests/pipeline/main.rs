@@ -31,6 +31,8 @@ mod losses;
 mod manifest;
 #[cfg(feature = "stats")]
 mod panels;
+#[cfg(feature = "stats")]
+mod probe;
 mod profiles;
 #[cfg(feature = "stats")]
 mod python;

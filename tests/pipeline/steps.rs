@@ -138,6 +138,7 @@ pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[
             ("interaction_range_m", 1e-9.into()),
             ("interaction", "spots".into()),
             ("boundary", "periodic".into()),
+            ("machine_compliance_m_n", 0.0.into()),
             ("far_field", "cell".into()),
             ("control", "displacement".into()),
             ("coalescence", "cover".into()),

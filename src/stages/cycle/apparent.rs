@@ -26,7 +26,13 @@ impl Apparent {
         params: &CaseParams,
         length_m: f64,
     ) -> Result<Self, StageError> {
-        let Some(sphere) = params.probe else { return Ok(Self::default()) };
+        // JKR holds on a half-space.
+        let Some(sphere) = params.probe.filter(|_| params.substrate.is_none()) else {
+            return Ok(Self {
+                extent: params.probe.and_then(|_| extent(cycle, turning, length_m)),
+                ..Self::default()
+            });
+        };
         let probe = Probe::new(sphere.radius_m, Some(params.material.contact_modulus_pa))?;
         let loading: Vec<&Step> =
             cycle.steps[..=turning].iter().filter(|step| step.branch == Branch::Loading).collect();
@@ -71,14 +77,23 @@ fn extent(cycle: &Cycle<()>, step: usize, length_m: f64) -> Option<f64> {
     edges.reduce(f64::max)
 }
 
+/// Largest residual of a fit over the maximum magnitude of the load: beyond, the branch is not that of JKR.
+const LARGEST_RESIDUAL: f64 = 0.1;
+
+/// Work of adhesion of a fit that describes its branch.
+fn work(fit: Option<JkrFit>) -> Option<f64> {
+    let fit = fit.filter(|fit| fit.residual <= LARGEST_RESIDUAL)?;
+    fit.work_j_m2.map(|work| work.value)
+}
+
 /// Columns of the table of estimates, one row for each load reversal.
 pub(super) fn columns(frame: FrameBuilder, all: &[Apparent]) -> FrameBuilder {
     let each = |value: fn(&Apparent) -> Option<f64>| all.iter().map(value);
     frame
         .f64("work_pull_off_j_m2", each(|of| of.pull_off_j_m2))
         .f64("work_loss_j_m2", each(|of| of.loss_j_m2))
-        .f64("work_approach_j_m2", each(|of| of.approach?.work_j_m2.map(|work| work.value)))
-        .f64("work_retraction_j_m2", each(|of| of.retraction?.work_j_m2.map(|work| work.value)))
+        .f64("work_approach_j_m2", each(|of| work(of.approach)))
+        .f64("work_retraction_j_m2", each(|of| work(of.retraction)))
         .f64("fit_residual_approach_n", each(|of| of.approach.map(|fit| fit.residual_n)))
         .f64("fit_residual_retraction_n", each(|of| of.retraction.map(|fit| fit.residual_n)))
         .f64("probe_extent", each(|of| of.extent))

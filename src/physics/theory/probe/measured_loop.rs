@@ -109,6 +109,9 @@ pub fn evaluate(measured: &Measured<'_>) -> Result<Evaluated, PhysicsError> {
     let place = |row: usize| row as f64 / count as f64;
     let load: Vec<f64> =
         (0..count).map(|row| load_n[row] - fitted.load(displacement_m[row], place(row))).collect();
+    if range(load_n) == 0.0 {
+        return Err(fault("the load is the same at all points".to_owned(), "check the column of the force"));
+    }
     let closure = closed(displacement_m, load_n, turn, &fitted)?;
     if baseline != Baseline::None {
         has_zero(&load, &fitted)?;
@@ -137,6 +140,14 @@ pub fn evaluate(measured: &Measured<'_>) -> Result<Evaluated, PhysicsError> {
     let zero = found
         .map_or(count - 1, |_| (turn..=pull_off_row).rev().find(|row| load[*row] >= 0.0).unwrap_or(turn));
     let [closing_j, opening_j] = energies.works(zero);
+    let loss_j = energies.of(0, count - 1);
+    if loss_j.value < -MOST_GAINED * loss_j.standard_error {
+        return Err(fault(
+            format!("the loop gains energy: Θ = {:.2e} J", loss_j.value),
+            "check the order of the branches and the sign of compression: the load on retraction is below \
+             that on approach",
+        ));
+    }
     Ok(Evaluated {
         turn,
         in_contact: (0..count).map(|row| (fitted.contact[0]..fitted.contact[1]).contains(&row)).collect(),
@@ -147,7 +158,7 @@ pub fn evaluate(measured: &Measured<'_>) -> Result<Evaluated, PhysicsError> {
         closure,
         max_load_n: load[turn],
         pull_off_n,
-        loss_j: energies.of(0, count - 1),
+        loss_j,
         closing_j,
         opening_j,
         pull_off_row,
@@ -156,6 +167,9 @@ pub fn evaluate(measured: &Measured<'_>) -> Result<Evaluated, PhysicsError> {
         load_n: load,
     })
 }
+
+/// Standard errors by which the energy of a loop may be negative: beyond, it is not by noise.
+const MOST_GAINED: f64 = 4.0;
 
 /// Row of the load reversal of a loop whose branches go one way.
 fn reversal(way: &[f64], load: &[f64]) -> Result<usize, PhysicsError> {

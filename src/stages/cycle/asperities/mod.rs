@@ -19,7 +19,7 @@ use crate::model::AsperityOptions;
 use crate::physics::SpotStatus;
 use crate::physics::asperities::contact::rows::Kept;
 use crate::physics::asperities::contact::{Problem, Rules, State, Status};
-use crate::physics::asperities::{Asperities, Options};
+use crate::physics::asperities::{Asperities, Options, summits_on_probe};
 use crate::physics::cycle::{Cycle, Merged, Method};
 use crate::physics::surface::summits::Summit;
 use crate::schema;
@@ -98,7 +98,7 @@ pub(super) fn run(task: &CycleTask<'_>, options: &AsperityOptions) -> Result<Com
     Ok(Computed {
         method: Asperities::NAME,
         size: method.size(),
-        cycle: with_centres(cycle.without_states(), &summits),
+        cycle: with_centres(cycle.without_states(), &places(&method, params, &summits)?),
         tables,
         files: Vec::new(),
         load_unit_n,
@@ -108,6 +108,12 @@ pub(super) fn run(task: &CycleTask<'_>, options: &AsperityOptions) -> Result<Com
         adhesionless: Vec::new(),
         per_wavelength: None,
     })
+}
+
+/// The asperities at their places on the probe, or on the flat surface.
+fn places(method: &Asperities, params: &CaseParams, summits: &[Summit]) -> Result<Vec<Summit>, StageError> {
+    let Some(probe) = params.probe else { return Ok(summits.to_vec()) };
+    Ok(summits_on_probe(summits, probe, method.problem.length_m, params.boundary())?)
 }
 
 /// Unloads again from a load reversal of a finished cycle.
@@ -157,7 +163,8 @@ pub(super) fn unload_again(
     let merged = merged_rows(&campaign.cycle_dir(unit).join("merged.parquet"), counts[rows[0]] as usize)?;
     let state =
         State::restored(&method.problem, approach, &merged, &rows.iter().map(kept).collect::<Vec<_>>())?;
-    Ok(with_centres(method.unload_from(0, state)?.without_states(), &summits))
+    let cycle = method.unload_from(0, state)?.without_states();
+    Ok(with_centres(cycle, &places(&method, params, &summits)?))
 }
 
 /// The first spots that have merged on loading.

@@ -55,7 +55,8 @@ impl Square {
 impl Lattice {
     /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
     fn of(of: ElementsCase<'_>, length_m: f64, wavelengths: f64) -> Self {
-        let points = of.options.grid(wavelengths.max(of.radii(length_m)));
+        let wavelengths = wavelengths.max(of.radii(length_m));
+        let points = of.options.grid(wavelengths);
         let spacing_m = length_m / f64::from(points);
         Self {
             points: points as usize,
@@ -89,6 +90,39 @@ impl ElementsCase<'_> {
     }
 }
 
+impl ElementsCase<'_> {
+    /// Why layer and machine of the case cannot be used on a square of a side \[m\] with `points` grid points
+    /// along it, and what to do.
+    pub(super) fn refusal_of_medium(self, length_m: f64, points: usize) -> Option<(String, String)> {
+        let spacing_m = length_m / points as f64;
+        if let Some(layer) = self.params.substrate
+            && layer.thickness_m < THINNEST_LAYER * spacing_m
+        {
+            let problem = format!(
+                "the layer of {} m is thinner than {THINNEST_LAYER} grid spacings of {spacing_m:.2e} m: the \
+                 law of adhesion is that of an edge on a half-space",
+                layer.thickness_m
+            );
+            return Some((problem, "use more boundary_elements.points, or a thicker layer".to_owned()));
+        }
+        let softest_m_n = SOFTEST_MACHINE / (self.params.material.contact_modulus_pa * length_m);
+        let compliance_m_n = self.params.machine.compliance_m_n;
+        (compliance_m_n > softest_m_n).then(|| {
+            let problem = format!(
+                "the compliance of the machine, {compliance_m_n:.2e} m/N, is above \
+                 {SOFTEST_MACHINE}/(E* L) = {softest_m_n:.2e} m/N: its energy hides that of the contact"
+            );
+            (problem, "write machine.control = \"load\", or use a stiffer machine".to_owned())
+        })
+    }
+}
+
+/// Thickness of a layer in grid spacings, at least: at 4 the layer is a half-space for waves of 4 spacings,
+/// on which the law acts, to 2 %.
+const THINNEST_LAYER: f64 = 4.0;
+/// Compliance of a machine in 1/(E* L), at most: its spring has 100 times the energy of the contact.
+const SOFTEST_MACHINE: f64 = 2000.0;
+
 /// Grid points of the automatic grid per JKR radius of a probe at zero penetration.
 const POINTS_PER_RADIUS: f64 = 12.0;
 
@@ -112,6 +146,9 @@ pub(super) fn checked_lattice(
     }
     let lattice = Lattice::of(of, length_m, wavelengths);
     enough_memory(lattice.points, loads)?;
+    if let Some((problem, help)) = of.refusal_of_medium(length_m, lattice.points) {
+        return Err(StageError::Range { problem, help });
+    }
     let refused = lattice.range_m.and_then(|range_m| elements.refusal_of_range(range_m, rms_height_m, loads));
     if let Some((problem, help)) = refused {
         return Err(StageError::Range { problem, help });

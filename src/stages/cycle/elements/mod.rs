@@ -68,7 +68,10 @@ impl ElementsCase<'_> {
             (Some(known), _) => checked_lattice(self, &known.header, known.header.rms_height_m).err(),
             (None, SurfaceSource::Generated(surface)) => {
                 let lattice = Lattice::of_generated(self, surface);
-                enough_memory(lattice.points, self.params.cycle.max_load.len()).err().map(StageError::from)
+                let memory = enough_memory(lattice.points, self.params.cycle.max_load.len()).err();
+                let medium = || self.refusal_of_medium(surface.length_m, lattice.points);
+                let of_medium = || medium().map(|(problem, help)| StageError::Range { problem, help });
+                memory.map(StageError::from).or_else(of_medium)
             }
             (None, SurfaceSource::Measured(_)) => None,
         }
