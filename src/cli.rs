@@ -38,7 +38,7 @@ pub struct Arguments {
 enum Verb {
     /// Print a commented spec to start from
     Init {
-        /// One of quickstart, sweep, scan, spectrum, full
+        /// One of quickstart, sweep, scan, spectrum, probe, full
         #[arg(value_enum, default_value = "quickstart", hide_possible_values = true)]
         template: templates::Template,
         /// List the templates
@@ -120,7 +120,7 @@ enum Verb {
     },
     /// Preprocess a measured surface and report its statistics
     #[command(long_about = help::IMPORT)]
-    Import(ImportArguments),
+    Import(Box<ImportArguments>),
     /// Stage 1: generate or import the surfaces
     Generate(CampaignArguments),
     /// Stage 2: extract the asperities of the surfaces

@@ -86,7 +86,7 @@ impl<'a> Lines<'a> {
     fn of(text: &'a str) -> Self {
         let text = text.trim_start_matches('\u{feff}');
         let is_number = |cell: &&str| cell.parse::<f64>().is_ok();
-        let (mut heading, mut cells): (Option<Vec<&str>>, Vec<(usize, Vec<&str>)>) = (None, Vec::new());
+        let (mut heading, mut cells) = (None, Vec::new());
         for (number, line) in text.lines().enumerate() {
             let comment = line.trim_start().strip_prefix(['#', '%']);
             let found = split(comment.unwrap_or(line));

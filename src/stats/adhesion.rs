@@ -59,14 +59,14 @@ mod tests {
         // From Δ = 2, F = 2 to F = 0 at Δ = 0, and to F = -1 at Δ = -1, where it opens.
         let branch = unloading(&[(2.0, 2.0), (0.5, 0.5), (-0.5, -0.5), (-1.0, -1.0)]);
         // Loading took 1.6 J: closing gave 2 - 1.6, opening takes 1/2.
-        let [closing, opening] = closing_and_opening_j(1.6, &branch).unwrap();
+        let [closing, opening] = closing_and_opening_j(1.6, &branch).unwrap_or([f64::NAN; 2]);
         assert!((closing - 0.4).abs() < 1e-15 && (opening - 0.5).abs() < 1e-15, "{closing} {opening}");
     }
 
     #[test]
     fn lim_without_tension_nothing_opens() {
         let branch = unloading(&[(2.0, 2.0), (0.0, 0.0)]);
-        let [closing, opening] = closing_and_opening_j(2.0, &branch).unwrap();
+        let [closing, opening] = closing_and_opening_j(2.0, &branch).unwrap_or([f64::NAN; 2]);
         assert!(closing.abs() < 1e-15 && opening == 0.0);
     }
 }

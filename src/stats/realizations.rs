@@ -153,21 +153,14 @@ fn reduce(
     let converged = loading.converged.iter().take(turning + 1).chain(&unloading.converged);
     let (contacts, covered) = (count_at(&loading.contact_count), count_at(&loading.covered_count));
     let pull_off = pull_off_n(unloading, input);
-    let touching = count_at(&loading.touching_count);
     let held: i64 = loading.held_count.iter().take(turning + 1).chain(&unloading.held_count).sum();
     let load_unit = at(&loading.load)? / at(&loading.load_n)?;
-    // The sum and the union of the discs are both in m²; A0 need not be known to scale the one like the
-    // other.
+    // Sum and union of the discs are both in m²: A0 need not be known.
     let union = union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 });
     let per_area = |loss_j: f64| loss_j * area / input.energy_scale_j;
     let loss_dk = input.loss_dk_per_area_j.map(per_area);
     let share = |part: i64, of: i64| (of > 0).then(|| part as f64 / of as f64);
-    let area_m2 = input.surface.iter().find(|(name, _)| name == "nominal_area_m2");
-    let area_m2 = area_m2.and_then(|(_, value)| value.number());
-    let per_m2 = |energy_j: f64| area_m2.map(|area_m2| energy_j / area_m2);
-    let works = closing_and_opening_j(at_reversal, unloading).filter(|_| is_resolved);
-    let adhesion_j = input.loss_dalvi_per_area_j;
-    let columns: [(&str, Value); 34] = [
+    let columns: [(&str, Value); 28] = [
         ("realization", input.realization.into()),
         ("cycle_id", input.cycle_id.as_str().into()),
         ("surface_id", input.surface_id.as_str().into()),
@@ -175,17 +168,11 @@ fn reduce(
         ("max_load", max_load.into()),
         // The turning step has the unit of load, as the quotient of its two columns.
         ("pull_off_load", pull_off.map(|pull_off| pull_off * load_unit).into()),
-        ("pull_off_load_n", pull_off.into()),
-        ("pull_off_pressure_pa", pull_off.and_then(per_m2).into()),
         ("area_at_max_load", area.into()),
         ("area_union_at_max_load", union.into()),
         ("penetration_at_max_load", at(&loading.penetration)?.into()),
         ("loss", is_resolved.then_some(loss).into()),
         ("loss_j", is_resolved.then_some(loss_j).into()),
-        ("loss_j_m2", is_resolved.then_some(loss_j).and_then(per_m2).into()),
-        ("loss_over_adhesion", (is_resolved && adhesion_j > 0.0).then(|| loss_j / adhesion_j).into()),
-        ("work_closing_j_m2", works.and_then(|works| per_m2(works[0])).into()),
-        ("work_opening_j_m2", works.and_then(|works| per_m2(works[1])).into()),
         ("loss_dk", loss_dk.into()),
         ("loss_dk_realised", input.loss_dk_realised_per_area_j.map(per_area).into()),
         ("loss_pinning", input.loss_pinning_per_area_j.map(per_area).into()),
@@ -196,13 +183,38 @@ fn reduce(
         ("audit_gap", audit_gap(energies, on_loading, work_j).into()),
         ("loss_uncertainty", uncertainty(energies, max_load, input).into()),
         ("contact_count_at_max_load", contacts.into()),
-        ("touching_count_at_max_load", touching.into()),
+        ("touching_count_at_max_load", count_at(&loading.touching_count).into()),
         ("covered_count_at_max_load", covered.into()),
         ("step_count", (turning + 1 + unloading.step.len()).into()),
         ("unconverged_count", converged.filter(|converged| !**converged).count().into()),
         ("held_count", held.into()),
-        ("touching_share", share(touching, contacts).into()),
+        ("touching_share", share(count_at(&loading.touching_count), contacts).into()),
         ("covered_share", share(covered, contacts + covered).into()),
     ];
-    Ok(columns.into_iter().map(|(name, value)| (name.to_owned(), value)).collect())
+    let works = closing_and_opening_j(at_reversal, unloading);
+    let columns = columns.into_iter().chain(in_si(pull_off, is_resolved.then_some(loss_j), works, input));
+    Ok(columns.map(|(name, value)| (name.to_owned(), value)).collect())
+}
+
+/// Results in SI units, per nominal area and over the work of adhesion, from the pull-off force \[N\], the
+/// dissipated energy and the energies of closing and opening \[J\].
+fn in_si(
+    pull_off_n: Option<f64>,
+    loss_j: Option<f64>,
+    works: Option<[f64; 2]>,
+    input: &CycleInput,
+) -> [(&'static str, Value); 6] {
+    let area_m2 = input.surface.iter().find(|(name, _)| name == "nominal_area_m2");
+    let area_m2 = area_m2.and_then(|(_, value)| value.number());
+    let per_m2 = |energy_j: f64| area_m2.map(|area_m2| energy_j / area_m2);
+    let works = works.filter(|_| loss_j.is_some());
+    let adhesion_j = Some(input.loss_dalvi_per_area_j).filter(|adhesion_j| *adhesion_j > 0.0);
+    [
+        ("pull_off_load_n", pull_off_n.into()),
+        ("pull_off_pressure_pa", pull_off_n.and_then(per_m2).into()),
+        ("loss_j_m2", loss_j.and_then(per_m2).into()),
+        ("loss_over_adhesion", loss_j.zip(adhesion_j).map(|(loss, adhesion)| loss / adhesion).into()),
+        ("work_closing_j_m2", works.and_then(|works| per_m2(works[0])).into()),
+        ("work_opening_j_m2", works.and_then(|works| per_m2(works[1])).into()),
+    ]
 }

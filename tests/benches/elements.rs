@@ -47,6 +47,7 @@ fn one(zeta: u32, n: usize, range: bool) {
         half_space: HalfSpace::new(n, n).unwrap(),
         law,
         heights: surface.heights_m.iter().map(|height| (height - top) / spacing).collect(),
+        machine_compliance: 0.0,
         attraction,
         numerics: Numerics::DEFAULT,
     };

@@ -168,11 +168,11 @@ fn val_the_rms_height_of_an_anisotropic_spectrum_is_that_of_its_key() {
     let (angles, rings) = (2000, 4000);
     let mut sums = [0.0; 3];
     for i in 0..angles {
-        let (sin, cos) = (TAU * (i as f64 + 0.5) / angles as f64).sin_cos();
+        let (sin, cos) = (TAU * (f64::from(i) + 0.5) / f64::from(angles)).sin_cos();
         let f = (r * cos * cos + sin * sin / r).sqrt();
         for j in 0..rings {
-            let q = ql * 32f64.powf((j as f64 + 0.5) / rings as f64);
-            let c = (q * f).max(qr).powf(-3.6) * q * q * 32f64.ln() / rings as f64 * TAU / angles as f64;
+            let q = ql * 32f64.powf((f64::from(j) + 0.5) / f64::from(rings));
+            let c = (q * f).max(qr).powf(-3.6) * q * q * 32f64.ln() / f64::from(rings) * TAU / f64::from(angles);
             sums = [sums[0] + c, sums[1] + c * q, sums[2] + c * q * q];
         }
     }
@@ -327,7 +327,7 @@ fn law_the_default_shape_is_eq_10() {
     assert!(spectrum.shape.is_plain() && spectrum.shape.is_isotropic());
     assert!(!rolled(1e-6).is_plain());
     // A roll-off at L has no plateau: the general formulas give Eq 10.
-    let general = Spectrum { shape: rolled(spectrum.length_m), ..spectrum.clone() };
+    let general = Spectrum { shape: rolled(spectrum.length_m), ..spectrum };
     close("prefactor", general.prefactor(), spectrum.prefactor(), 1e-12);
     close("density", general.mode_density(3, -4), spectrum.density(25), 1e-12);
     close("slope", general.moments().rms_slope(), spectrum.moments().rms_slope(), 1e-12);

@@ -34,7 +34,7 @@ fn table(spec: &str) -> (Bench, Frame) {
 }
 
 fn column(frame: &Frame, name: &str) -> Vec<f64> {
-    frame.f64_or_null(name).unwrap().into_iter().map(|value| value.unwrap_or(f64::NAN)).collect()
+    frame.f64_or_null(name).unwrap().iter().map(|value| value.unwrap_or(f64::NAN)).collect()
 }
 
 /// The pull-off force is 1.5πRΔγ = 2.827e-6 N for both methods: to 2 % for asperities (Wu's jump into contact does not change it), to 6.5 % on the grid of 8
@@ -46,14 +46,14 @@ fn e2e_a_probe_by_both_methods() {
     let (bench, frame) = table(&spec);
     assert_eq!(frame.row_count(), 2);
     let methods = frame.text("method").unwrap();
-    for row in 0..2 {
-        let limit = if methods[row] == "asperities" { 0.02 } else { 0.065 };
+    for (row, method) in methods.iter().enumerate() {
+        let limit = if *method == "asperities" { 0.02 } else { 0.065 };
         let of = |name: &str| column(&frame, name)[row];
-        assert!((of("pull_off_load_n") / 2.827e-6 - 1.0).abs() < limit, "{}: {}", methods[row], of("pull_off_load_n"));
-        assert!((of("work_pull_off_j_m2") / 0.03 - 1.0).abs() < limit, "{}", methods[row]);
+        assert!((of("pull_off_load_n") / 2.827e-6 - 1.0).abs() < limit, "{}: {}", method, of("pull_off_load_n"));
+        assert!((of("work_pull_off_j_m2") / 0.03 - 1.0).abs() < limit, "{}", method);
         for fit in ["work_approach_j_m2", "work_retraction_j_m2"] {
             // The area is that of grid points: its radius is 0.3 spacings too small.
-            assert!((of(fit) / 0.03 - 1.0).abs() < 0.2, "{} {fit}: {}", methods[row], of(fit));
+            assert!((of(fit) / 0.03 - 1.0).abs() < 0.2, "{} {fit}: {}", method, of(fit));
         }
         let difference = of("work_opening_j_m2") - of("work_closing_j_m2");
         assert!((difference / of("loss_j_m2") - 1.0).abs() < 1e-9, "{difference}, {}", of("loss_j_m2"));

@@ -87,7 +87,7 @@ fn e2e_bad_tables_are_refused_at_their_line() {
         ("", many.clone(), "unknown normalization"),
         (&format!("{PLAIN}\nspectrum_unit = \"m\""), many.clone(), "surface.spectrum_unit is set"),
         (&format!("{PLAIN}\nspectrum_kind = \"profile\""), many.clone(), "to the power 4"),
-        (&format!("{PLAIN}\nspectrum_series = \"x\""), many.clone(), "no column \"Data series\""),
+        (&format!("{PLAIN}\nspectrum_series = \"x\""), many, "no column \"Data series\""),
         (&format!("{PLAIN}\naspect_ratio = 2"), table("q_1_m,c_m4", rows(6e6)), "it covers"),
         (PLAIN, table("q_1_m,c_m3", [[5e5, 1e-22], [1e6, 4e-22], [4e6, 3.9e-22], [8e6, 1e-23]]), "line 2: Abel"),
         (PLAIN, table("q_1_m,c_m3", [[5e5, 1e-22], [1e6, 2e-22]]), "line 3: the spectrum of a profile"),

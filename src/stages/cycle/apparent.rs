@@ -1,6 +1,7 @@
 //! Apparent works of adhesion of a cycle with a probe, as of an experiment.
 
 use super::super::StageError;
+use super::Computed;
 use crate::physics::cycle::{Branch, Cycle, Step};
 use crate::physics::theory::probe::{Branch as Fitted, JkrFit, Probe};
 use crate::spec::CaseParams;
@@ -20,7 +21,7 @@ pub(super) struct Apparent {
 impl Apparent {
     /// Of the loop whose loading ends at the step `turning` with the load `max_load`, on a square of a side
     /// \[m\]. Nothing without a probe.
-    pub(super) fn of(
+    fn of(
         cycle: &Cycle<()>,
         (turning, max_load): (usize, f64),
         params: &CaseParams,
@@ -60,6 +61,16 @@ impl Apparent {
             extent: extent(cycle, turning, length_m),
         })
     }
+}
+
+/// Those of each load reversal, with its step and load; nothing for a load that is not reached.
+pub(super) fn of_reversals(
+    computed: &Computed,
+    reversals: &[Option<(usize, f64)>],
+    params: &CaseParams,
+) -> Result<Vec<Apparent>, StageError> {
+    let of_loop = |at| Apparent::of(&computed.cycle, at, params, computed.area_m2.sqrt());
+    reversals.iter().map(|turning| turning.map_or(Ok(Apparent::default()), of_loop)).collect()
 }
 
 /// Largest distance of a contact edge from the middle of a square at a step, over its side; nothing if the

@@ -4,7 +4,7 @@ use super::super::StageError;
 use super::super::estimates::{finite, ratio_columns, read_surface_estimates, target};
 use super::super::identity::Identity;
 use super::super::surface::scale;
-use super::apparent::{self, Apparent};
+use super::apparent;
 use super::{Computed, CycleTask};
 use crate::physics::EventKind;
 use crate::physics::cycle::soundness::LoopEnergy;
@@ -60,15 +60,7 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
         .f64("loss_jkr_curve", each(|at| at.jkr_curve.map(|found| found.loss_m3), nominal_m2 * rms_height_m))
         .f64("loss_touched", reversals.iter().map(by_asperities));
     let of_realised = Some(all.deng_kesari_realised);
-    let apparent = reversals
-        .iter()
-        .map(|turning| {
-            turning.map_or(Ok(Apparent::default()), |loop_of| {
-                Apparent::of(&computed.cycle, loop_of, params, computed.area_m2.sqrt())
-            })
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    frame = apparent::columns(frame, &apparent);
+    frame = apparent::columns(frame, &apparent::of_reversals(computed, &reversals, params)?);
     for (name, value) in ratio_columns(&all.ratios) {
         frame = frame.f64(name, same(value));
     }

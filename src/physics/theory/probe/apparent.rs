@@ -87,11 +87,8 @@ impl Evaluated {
     fn pool(&self, found: &mut Apparent) {
         let factors = found.residuals_n.iter().flatten().map(|residual| self.noise_n / residual);
         let factor = factors.filter(|factor| factor.is_finite()).fold(1.0, f64::max);
-        for estimate in [&mut found.approach_j_m2, &mut found.retraction_j_m2, &mut found.modulus_pa] {
-            if let Some(estimate) = estimate {
-                estimate.standard_error *= factor;
-            }
-        }
+        let estimates = [&mut found.approach_j_m2, &mut found.retraction_j_m2, &mut found.modulus_pa];
+        estimates.into_iter().flatten().for_each(|estimate| estimate.standard_error *= factor);
     }
 
     fn of_radius(&self, probe: &Probe, rows: Rows<'_>, radius: &[f64]) -> Apparent {

@@ -109,9 +109,6 @@ pub fn evaluate(measured: &Measured<'_>) -> Result<Evaluated, PhysicsError> {
     let place = |row: usize| row as f64 / count as f64;
     let load: Vec<f64> =
         (0..count).map(|row| load_n[row] - fitted.load(displacement_m[row], place(row))).collect();
-    if range(load_n) == 0.0 {
-        return Err(fault("the load is the same at all points".to_owned(), "check the column of the force"));
-    }
     let closure = closed(displacement_m, load_n, turn, &fitted)?;
     if baseline != Baseline::None {
         has_zero(&load, &fitted)?;
@@ -140,14 +137,7 @@ pub fn evaluate(measured: &Measured<'_>) -> Result<Evaluated, PhysicsError> {
     let zero = found
         .map_or(count - 1, |_| (turn..=pull_off_row).rev().find(|row| load[*row] >= 0.0).unwrap_or(turn));
     let [closing_j, opening_j] = energies.works(zero);
-    let loss_j = energies.of(0, count - 1);
-    if loss_j.value < -MOST_GAINED * loss_j.standard_error {
-        return Err(fault(
-            format!("the loop gains energy: Θ = {:.2e} J", loss_j.value),
-            "check the order of the branches and the sign of compression: the load on retraction is below \
-             that on approach",
-        ));
-    }
+    let loss_j = dissipated(energies.of(0, count - 1))?;
     Ok(Evaluated {
         turn,
         in_contact: (0..count).map(|row| (fitted.contact[0]..fitted.contact[1]).contains(&row)).collect(),
@@ -168,6 +158,18 @@ pub fn evaluate(measured: &Measured<'_>) -> Result<Evaluated, PhysicsError> {
     })
 }
 
+/// The dissipated energy of a loop, unless it is negative beyond its error.
+fn dissipated(loss_j: Estimate) -> Result<Estimate, PhysicsError> {
+    if loss_j.value >= -MOST_GAINED * loss_j.standard_error {
+        return Ok(loss_j);
+    }
+    Err(fault(
+        format!("the loop gains energy: Θ = {:.2e} J", loss_j.value),
+        "check the order of the branches and the sign of compression: the load on retraction must be below \
+         that on approach",
+    ))
+}
+
 /// Standard errors by which the energy of a loop may be negative: beyond, it is not by noise.
 const MOST_GAINED: f64 = 4.0;
 
@@ -179,6 +181,9 @@ fn reversal(way: &[f64], load: &[f64]) -> Result<usize, PhysicsError> {
             format!("{count} displacements and {} loads", load.len()),
             "give one load for each displacement",
         ));
+    }
+    if count > 0 && range(load) == 0.0 {
+        return Err(fault("the load is the same at all points".to_owned(), "check the column of the force"));
     }
     if count < FEWEST {
         return Err(fault(

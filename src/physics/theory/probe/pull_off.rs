@@ -60,7 +60,7 @@ fn minimum(load: &[f64], window: std::ops::RangeInclusive<usize>, terms: i32) ->
         let x = (2.0 * row - low - high) / (high - low);
         (0..terms).map(|power| x.powi(power)).collect::<Vec<_>>()
     };
-    let rows: Vec<_> = window.clone().map(|row| (powers(row as f64), load[row])).collect();
+    let rows: Vec<_> = window.map(|row| (powers(row as f64), load[row])).collect();
     let fit = solve(&rows, 0.0)?;
     let value = |gradient: &[f64]| gradient.iter().zip(&fit.values).map(|(u, v)| u * v).sum::<f64>();
     let fine = (0..=1000).map(|k| low + (high - low) * f64::from(k) / 1000.0);
