@@ -150,7 +150,7 @@ pub static MEASURED_LOOPS: Table = Table {
     name: "measured_loops",
     version: 1,
     file: "statistics/measured_loops.parquet",
-    doc: "One row per measured loop of the table [experiment] of the spec. Columns with the name of one of \
+    doc: "One row per measured loop of `[experiment]` of the spec. Columns with the name of one of \
         the table realizations have the same meaning.",
     columns: &LOOP_COLUMNS,
 };

@@ -73,7 +73,7 @@ pub(super) const MODULUS: Limits = Limits {
     unit: " Pa",
     unit_name: "pascals",
     slip: Some((1e6, "megapascals")),
-    note: "E*, reduced modulus; left out, that of the table [material]",
+    note: "E*, reduced modulus; left out, that of `[material]`",
 };
 /// Bounds of the stiffness of the machine.
 pub(super) const STIFFNESS: Limits = Limits {
