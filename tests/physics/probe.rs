@@ -326,6 +326,8 @@ fn reg_loops_that_are_refused() {
         (part(0..280), "does not close"),
         (in_contact, "ontact"),
         (zigzag, "goes back"),
+        (Loop { load: vec![0.0; good.load.len()], ..good.clone() }, "the same at all points"),
+        (Loop { load: good.load.iter().rev().copied().collect(), ..good.clone() }, "gains energy"),
         (Loop { way: good.way[..300].to_vec(), ..good.clone() }, "300 displacements"),
     ] {
         let error = evaluate(&found.measured()).unwrap_err().to_string();

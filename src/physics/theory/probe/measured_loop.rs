@@ -182,14 +182,14 @@ fn reversal(way: &[f64], load: &[f64]) -> Result<usize, PhysicsError> {
             "give one load for each displacement",
         ));
     }
-    if count > 0 && range(load) == 0.0 {
-        return Err(fault("the load is the same at all points".to_owned(), "check the column of the force"));
-    }
     if count < FEWEST {
         return Err(fault(
             format!("the loop has {count} points"),
             "a loop needs at least 30 points, from before contact to after separation",
         ));
+    }
+    if range(load) == 0.0 {
+        return Err(fault("the load is the same at all points".to_owned(), "check the column of the force"));
     }
     let turn = (0..count).max_by(|u, v| way[*u].total_cmp(&way[*v])).unwrap_or_default();
     if turn < FEWEST_OF_BRANCH || count - turn <= FEWEST_OF_BRANCH {
