@@ -38,7 +38,7 @@ pub struct Arguments {
 enum Verb {
     /// Print a commented spec to start from
     Init {
-        /// One of quickstart, sweep, scan, spectrum, probe, full
+        /// quickstart, sweep, scan, spectrum, probe or full
         #[arg(value_enum, default_value = "quickstart", hide_possible_values = true)]
         template: templates::Template,
         /// List the templates
