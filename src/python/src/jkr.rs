@@ -59,6 +59,7 @@ of_asperity! {
     pull_off_load() |spot| spot.pull_off_load();
     radius_at_penetration(penetration_m) |spot, penetration|
         spot.radius_at_penetration(penetration).unwrap_or(f64::NAN);
+    radius_at_load(load_n) |spot, load| spot.radius_at_load(load).unwrap_or(f64::NAN);
     stored_energy(penetration_m, a_m) |spot, penetration, a|
         within(a >= 0.0, spot.stored_energy(penetration, a));
     tabor(range_m) |spot, range| within(range > 0.0, spot.tabor(range));

@@ -110,6 +110,14 @@ def radius_at_penetration(
     return one(_hysteron.radius_at_penetration, radius_m, penetration_m, contact_modulus_pa, work_of_adhesion_j_m2, eq9=eq9)
 
 
+def radius_at_load(radius_m: Reals, load_n: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals) -> Result:
+    """Contact radius a [m] on the branch that is stable under control of the load, at a load F [N].
+
+    `a³ = (3R/(4E*)) (F + 3πRΔγ + sqrt(6πRΔγF + (3πRΔγ)²))`. NaN at a tension above the pull-off force.
+    """
+    return one(_hysteron.radius_at_load, radius_m, load_n, contact_modulus_pa, work_of_adhesion_j_m2, eq9=False)
+
+
 def stored_energy(
     radius_m: Reals, penetration_m: Reals, a_m: Reals, *, contact_modulus_pa: Reals, work_of_adhesion_j_m2: Reals
 ) -> Result:
