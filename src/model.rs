@@ -3,6 +3,7 @@
 mod case;
 mod experiment;
 
+pub use crate::physics::elements::probe::SPHERE_SHARE;
 pub use crate::physics::model::*;
 pub use crate::physics::theory::regime::{BRIDGED, FLATTENED, LARGE_AREA, Regime, SEPARATE};
 pub use case::{

@@ -220,9 +220,8 @@ fn loops(
                 spec.files.insert(found, digest);
             }
             Err(Refusal { problem, help }) => {
-                let at = if faults.is_full() { 0 } else { place(name, text) };
                 let message = format!("the measured loop \"{name}\" cannot be read: {problem}");
-                faults.add(&(at..at + name.len().min(text.len() - at)), message, help);
+                blame(name, text, message, help, faults);
             }
         }
     }

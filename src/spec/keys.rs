@@ -446,21 +446,10 @@ pub const GENERATED: [&str; 15] = [
 ];
 /// Keys of `[surface]` that a tabulated spectrum replaces.
 pub const REPLACED: [&str; 4] = ["rms_height_m", "hurst", "normalization", "roll_off_m"];
-/// Keys of `[surface]` that describe the table of a spectrum.
-pub(super) const OF_TABLE: [&str; 4] =
-    ["spectrum_kind", "spectrum_convention", "spectrum_unit", "spectrum_series"];
-/// Keys that a resolved spec has only where they are not at their default.
-pub const WHERE_USED: [&str; 9] = [
-    "longest_wavelength_m",
-    "roll_off_m",
-    "aspect_ratio",
-    "angle_deg",
-    "spectrum",
-    "spectrum_kind",
-    "spectrum_convention",
-    "spectrum_unit",
-    "spectrum_series",
-];
+/// Keys that a resolved spec has only where they are not at their default: those after `amplitudes`.
+pub const WHERE_USED: &[&str] = GENERATED.split_at(6).1;
+/// Keys of `[surface]` that describe the table of a spectrum: those after `spectrum`.
+pub(super) const OF_TABLE: &[&str] = WHERE_USED.split_at(5).1;
 
 /// The place in [`KEYS`] of a key of a table.
 pub(super) fn find(table: &str, name: &str) -> Option<usize> {

@@ -6,13 +6,8 @@ use super::keys::{Limits, find};
 use super::number::short;
 use super::values::Values;
 use super::walk::{Origin, written};
-use crate::model::{CaseParams, Coalescence, Control, FarField, Material, Method, Probe};
-use crate::physics::elements::probe::SPHERE_SHARE;
+use crate::model::{CaseParams, Coalescence, Control, FarField, Material, Method, Probe, SPHERE_SHARE};
 use crate::physics::jkr::Asperity;
-
-/// Largest radius of contact of a probe over the side of the square: beyond, its surface is not that of the
-/// sphere.
-pub const LARGEST_RADIUS_SHARE: f64 = SPHERE_SHARE;
 
 /// Why a probe cannot be used on a square of a side \[m\] with a load \[N\], and what to do: its contact by
 /// JKR is too large.
@@ -24,14 +19,14 @@ pub fn probe_refusal(
     load_n: f64,
 ) -> Option<(String, String)> {
     let radius_m = Asperity::new(probe.radius_m, material).ok()?.radius_at_load(load_n)?;
-    let largest_m = LARGEST_RADIUS_SHARE * length_m;
+    let largest_m = SPHERE_SHARE * length_m;
     (radius_m > largest_m).then(|| {
         let problem = format!(
             "the contact of the probe is too large for the square: a smooth sphere has a contact radius of \
-             {radius_m:.3e} m at the maximum load, and at most {LARGEST_RADIUS_SHARE} L = {largest_m:.3e} m \
+             {radius_m:.3e} m at the maximum load, and at most {SPHERE_SHARE} L = {largest_m:.3e} m \
              can be used"
         );
-        let side_m = radius_m / LARGEST_RADIUS_SHARE;
+        let side_m = radius_m / SPHERE_SHARE;
         (problem, format!("use a square of at least {side_m:.2e} m, or a smaller load or probe"))
     })
 }

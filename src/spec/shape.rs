@@ -63,7 +63,7 @@ fn check_table(surface: &GeneratedSurface, (origins, swept): (&[Origin], &[usize
         return;
     }
     let (names, help) = if surface.is_tabulated() {
-        (REPLACED, "remove one of the two keys: the table has its own rms height and shape")
+        (REPLACED.as_slice(), "remove one of the two keys: the table has its own rms height and shape")
     } else {
         (OF_TABLE, "add surface.spectrum, the file of the table, or remove the key")
     };

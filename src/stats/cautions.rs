@@ -2,7 +2,7 @@
 
 use super::rows::Value;
 use super::{CaseInput, Given};
-use crate::model::{BRIDGED, LARGE_AREA, SEPARATE};
+use crate::model::{BRIDGED, LARGE_AREA, SEPARATE, SPHERE_SHARE};
 
 /// A warning that a row of the table `cases` may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -310,7 +310,7 @@ pub const LIMITS: [Limit; 19] = [
     Limit::at_least("tabor", "tabor_min_min", 2.0),
     Limit::at_most("overshoot", "filter_overshoot_max", 0.01),
     Limit::at_least("coarse", "elements_per_wavelength_min", 16.0),
-    Limit::at_most("extent", "probe_extent_max", LARGEST_EXTENT),
+    Limit::at_most("extent", "probe_extent_max", SPHERE_SHARE),
     Limit::at_most("texture", "texture_aspect_max", 2.0),
     Limit::at_most("outliers", "outlier_share_max", 0.0),
     Limit::at_most("lines", "line_jump_share_max", 0.01),
@@ -354,9 +354,6 @@ const OF_ASPERITIES: [&str; 9] = [
 
 /// Largest share of the work of adhesion for the roughness of a table below the shortest wavelength.
 pub const MOST_LEFT_OUT: f64 = 0.05;
-
-/// Largest distance of a contact edge from the apex of a probe, over the side of the square.
-const LARGEST_EXTENT: f64 = 0.3;
 
 /// Shortest step of boundary elements, of the rms height, above which events are not located.
 pub const LONGEST_STEP: f64 = 0.05;

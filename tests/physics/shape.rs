@@ -90,7 +90,7 @@ fn val_a_long_cut_off_begins_at_its_wavelength() {
     assert_eq!(spectrum.band_1_m(), [TAU / (LENGTH / 4.0), 32.0 * TAU / LENGTH]);
 }
 
-/// Density of the rule in the guide, written out anew.
+/// Density of the rule in the guide, written out independently.
 fn rule(spectrum: &Spectrum, kx: i64, ky: i64) -> f64 {
     let (hurst, qr) = (spectrum.hurst, TAU / spectrum.shape.roll_off_m.unwrap());
     let ql = TAU / spectrum.length_m;
