@@ -260,16 +260,25 @@ const RESULTS: &[Column] = &[
         "Frozen asperities: state kept, because it alternated between absorbed and released; \
          summed over the steps",
     ),
-    real("tabor_min", "1", "Minimum Tabor parameter μ of the asperities").from("Eq 3"),
-    real("tabor_median", "1", "Median Tabor parameter μ of the asperities").from("Eq 3"),
-    real("tabor_max", "1", "Maximum Tabor parameter μ of the asperities").from("Eq 3"),
-    real("tabor_mean", "1", "Mean Tabor parameter μ of the asperities").from("Eq 3"),
+    real("tabor_min", "1", "Minimum Tabor parameter μ of the asperities; null without asperities")
+        .or_null()
+        .from("Eq 3"),
+    real("tabor_median", "1", "Median Tabor parameter μ of the asperities; null without asperities")
+        .or_null()
+        .from("Eq 3"),
+    real("tabor_max", "1", "Maximum Tabor parameter μ of the asperities; null without asperities")
+        .or_null()
+        .from("Eq 3"),
+    real("tabor_mean", "1", "Mean Tabor parameter μ of the asperities; null without asperities")
+        .or_null()
+        .from("Eq 3"),
     real(
         "low_tabor_share",
         "1",
         "Fraction of asperities with Tabor parameter μ < 2, where Wu's criterion is \
-         invalid",
+         invalid; null without asperities",
     )
+    .or_null()
     .from("Eq 3"),
     real("rms_slope", "1", "Root-mean-square slope, rms of the gradient of the realized surface"),
     real(

@@ -31,6 +31,7 @@ mod periodogram;
 mod potential;
 mod printed;
 mod probe;
+mod probe_by_both;
 mod properties;
 mod scan_filter;
 mod self_affine;
