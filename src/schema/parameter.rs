@@ -40,14 +40,15 @@ pub struct Parameter {
     pub label: &'static str,
     /// Place in the labels of cases, from 0.
     pub rank: u8,
-    /// True if only one of the methods reads it: it varies if it differs between cases of one method.
+    /// True if only some cases read it, as those of one method: it varies if it differs between cases of one
+    /// method, and labels of other cases omit it.
     pub of_method: bool,
     /// Value in a case; nothing if the case has none.
     pub get: fn(&CaseFacts<'_>) -> Option<ParameterValue>,
 }
 
 impl Parameter {
-    /// The parameter as one that only one of the methods reads.
+    /// The parameter as one that only some cases read.
     pub(super) const fn of_method(mut self) -> Self {
         self.of_method = true;
         self

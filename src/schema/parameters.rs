@@ -413,7 +413,8 @@ const LIST: [Parameter; COUNT] = [
         ["ν", "Poisson's ratio ν"],
         35,
         |case| case.params.substrate.map(|layer| Number(layer.poisson_ratio)),
-    ),
+    )
+    .of_method(),
     parameter(
         text(
             "spectrum_file",
@@ -477,7 +478,8 @@ const LIST: [Parameter; COUNT] = [
             let surface = case.params.surface.generated()?;
             (surface.aspect_ratio > 1.0).then_some(Number(surface.angle_deg))
         },
-    ),
+    )
+    .of_method(),
     parameter(
         real(
             "left_out_ratio",

@@ -19,6 +19,8 @@ pub struct Verdict {
     pub case_id: String,
     /// Its method.
     pub method: Method,
+    /// Side of the square \[m\]; nothing for a surface that is not known yet.
+    pub length_m: Option<f64>,
     /// Regime; nothing for a surface that is not known yet.
     pub regime: Option<Regime>,
     /// `U_el/Δγ`; nothing without adhesion.
@@ -77,10 +79,12 @@ fn verdict(unit: &CaseUnit, known: Option<&Known>) -> Verdict {
     let ratio = |of: fn(&Flattening, f64) -> f64| {
         energies.as_ref().filter(|_| adhesion > 0.0).map(|(energy, _)| of(energy, adhesion))
     };
+    let of_generated = || params.surface.generated().map(|surface| surface.length_m);
     let [whole, octave] = [ratio(Flattening::persson_tosatti), ratio(Flattening::conformity)];
     Verdict {
         case_id: unit.id.clone(),
         method: params.method.kind(),
+        length_m: known.map(|known| known.header.length_m).or_else(of_generated),
         regime: energies
             .map(|(energy, slope)| Regime::expected(&energy, adhesion, params.cycle.largest_load(), slope)),
         persson_tosatti: whole,

@@ -5,6 +5,9 @@ use super::digits::labels_with_unit;
 use crate::schema::{Parameter, parameters_by_rank};
 use crate::store::{ColumnData, Frame};
 
+/// Parameters that are not known before a measured surface is read; of others a missing value is none.
+const UNKNOWN: [&str; 2] = ["length_m", "rms_height_m"];
+
 /// The values of a parameter, one per row.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
@@ -27,7 +30,7 @@ pub struct Varying {
     pub values: Values,
     /// The values as labels.
     texts: Vec<String>,
-    /// Rows whose method does not read the parameter.
+    /// Rows whose case does not read the parameter.
     absent: Vec<bool>,
 }
 
@@ -50,9 +53,10 @@ impl Varying {
             Values::Numbers(numbers) => {
                 let known: Vec<f64> = numbers.iter().flatten().copied().collect();
                 let mut texts = labels_with_unit(name, &known).into_iter();
+                let missing = if UNKNOWN.contains(&name) { "?" } else { "none" };
                 numbers
                     .iter()
-                    .map(|number| number.and_then(|_| texts.next()).unwrap_or_else(|| "?".to_owned()))
+                    .map(|number| number.and_then(|_| texts.next()).unwrap_or_else(|| missing.to_owned()))
                     .collect()
             }
             Values::Words(words) => words
@@ -64,12 +68,12 @@ impl Varying {
         Self { name, symbol, label, values, texts, absent }
     }
 
-    /// The value of a row as a label: `64`, `0.5 nm`, `spots`, or `?` where it is missing.
+    /// The value of a row as a label: `64`, `0.5 nm`, `spots`, `none`, or `?` where it is not known.
     pub fn text(&self, row: usize) -> &str {
         self.texts.get(row).map_or("?", String::as_str)
     }
 
-    /// True if the method of a row does not read the parameter: labels omit it.
+    /// True if the case of a row does not read the parameter: labels omit it.
     pub fn is_absent(&self, row: usize) -> bool {
         self.absent.get(row).copied().unwrap_or_default()
     }

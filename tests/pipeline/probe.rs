@@ -5,7 +5,7 @@ use hysteron::spec::Spec;
 use hysteron::store::Frame;
 use hysteron::store::parquet::read_table;
 
-use crate::bench::{Bench, code, stderr};
+use crate::bench::{Bench, code, stderr, stdout};
 
 /// A nearly smooth sphere of 20 µm on an elastomer, on a grid of 8 points per JKR radius.
 const SPHERE: &str = "name = \"sphere\"
@@ -90,6 +90,41 @@ fn e2e_machine_and_control() {
     let (moved, contact, loads) = (column(&steps, "machine_displacement_m"), column(&steps, "approach_m"), column(&steps, "load_n"));
     // To the residual of an equilibrium.
     assert!((0..moved.len()).all(|row| (moved[row] - contact[row] - loads[row]).abs() < 1e-8), "c = 1 m/N");
+}
+
+/// The plan states the smooth sphere by JKR beside grid and square: `(2πΔγR²/E*)^⅓` = 4.22 µm, 1.5πRΔγ = 2.83 µN, and 5.37 µm at 1 µN.
+#[test]
+fn e2e_the_plan_states_probe_machine_and_layer() {
+    let plan = |spec: &str| {
+        let shown = Bench::new(spec).verb("plan", &[]);
+        assert_eq!(code(&shown), 0, "{}", stderr(&shown));
+        stdout(&shown).split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let layer = "[model]\nmethod = \"boundary_elements\"\n[substrate]\nthickness_m = 4.22e-5\n[cycle]";
+    let elements = SPHERE.replace("[cycle]", "[model]\nmethod = \"boundary_elements\"\n[cycle]");
+    let text = plan(&elements);
+    for words in ["4.22e-6 m at touch (8.4 grid points)", "F_po = 2.83e-6 N", "5.37e-6 m", "0.13 of the side", "half-space"] {
+        assert!(text.contains(words), "{words}\n{text}");
+    }
+    let text = plan(&SPHERE.replace("[cycle]", layer));
+    assert!(text.contains("10 contact radii of the sphere") && text.contains("periodic cell"), "{text}");
+    let flat = plan("name = \"flat\"\n[surface]\nmagnification = 8\n");
+    assert!(!flat.contains("machine") && !flat.contains("probe"), "{flat}");
+}
+
+/// Labels of cases that differ in a layer alone: one has none.
+#[test]
+fn e2e_labels_of_cases_with_and_without_a_layer() {
+    let layered =
+        "[[sweep]]\nname = \"layer\"\nsubstrate.thickness_m = 4e-5\n[[sweep]]\nname = \"none\"\nboundary_elements.points = 80\n[cycle]";
+    let spec = SPHERE
+        .replace("[cycle]", layered)
+        .replace("[probe]", "[model]\nmethod = \"boundary_elements\"\n[machine]\ncompliance = \"cell\"\n[probe]");
+    let bench = Bench::new(&spec);
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let text = stdout(&run);
+    assert!(text.contains("t = none") && text.contains("t = 40 µm") && !text.contains("= ?") && !text.contains("ν = none"), "{text}");
 }
 
 /// A spec with a change is refused with these words.

@@ -11,6 +11,7 @@ mod living;
 mod measured;
 mod outputs;
 mod place;
+mod probes;
 mod show;
 mod spectra;
 mod submit;

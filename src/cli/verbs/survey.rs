@@ -5,7 +5,7 @@ use super::ending::failed_cycles;
 use super::living::{Living, Units, left};
 use super::place::{folder, open, open_dir, resuming};
 use super::verdicts::outside_json;
-use super::{Fault, failed, say, spectra, submit, verdicts};
+use super::{Fault, failed, probes, say, spectra, submit, verdicts};
 use crate::campaign::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::slurm::{Queue, Sent};
@@ -40,6 +40,7 @@ pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
         let reasons = |stage: Stage, units: &[(String, Standing)]| causes(&campaign, stage, units);
         describe(&campaign, &units, reasons)
             + &spectra::text(&campaign)
+            + &probes::text(&campaign, &foreseen.verdicts)
             + &verdicts::plan_text(&foreseen)
             + &remaining(&units, &campaign, |open| {
                 format!("`run` would compute {}.\n", counted(open, "task"))

@@ -39,7 +39,7 @@ fn warning_text(of: &Outside, all: usize) -> String {
 }
 
 /// Smallest and largest of some values as text, with `digits` significant digits.
-fn range(values: impl Iterator<Item = f64> + Clone, digits: usize) -> Option<String> {
+pub(super) fn range(values: impl Iterator<Item = f64> + Clone, digits: usize) -> Option<String> {
     let [low, high] = [f64::min, f64::max]
         .map(|choose| values.clone().reduce(choose).map(|value| significant(value, digits)));
     let (low, high) = (low?, high?);

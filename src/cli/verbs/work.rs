@@ -3,7 +3,7 @@
 use super::ending::{Ended, tally_json};
 use super::place::{folder, folder_of, not_the_root, open, open_dir};
 use super::verdicts::run_text;
-use super::{BAD_SPEC, FAILED_CASES, Fault, failed, say, spectra, submit, viewer};
+use super::{BAD_SPEC, FAILED_CASES, Fault, failed, probes, say, spectra, submit, viewer};
 use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::arguments::TalkArguments;
 use crate::cli::progress::Teller;
@@ -184,7 +184,9 @@ fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> 
     let has_cycles = (task.from..=task.until).contains(&Stage::Cycle);
     let is_open = |standing: &Standing| !matches!(standing, Standing::Done | Standing::Failed(_));
     if has_cycles && !talk.quiet && campaign.cycle_standings(Check::Sizes).iter().any(is_open) {
-        teller.notice(&(spectra::text(&campaign) + &run_text(&foreseen(&campaign))));
+        let foreseen = foreseen(&campaign);
+        let before = spectra::text(&campaign) + &probes::text(&campaign, &foreseen.verdicts);
+        teller.notice(&(before + &run_text(&foreseen)));
     }
     let jobs = submit::sent(&campaign).unwrap_or_default();
     let again = submit::again(&campaign, &jobs);
