@@ -158,12 +158,14 @@ fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found:
     }
 }
 
-/// True if a file has the name of a figure that the program draws, as `zeta_A.svg` or `closer_loop.png`, in
-/// one of its formats.
+/// True if a file has the name of a figure that the program draws, as `zeta_A.svg`, `zeta_A_SI.svg` or
+/// `closer_loop.png`, in one of its formats.
 fn is_picture(path: &Path) -> bool {
-    let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.rsplit_once('_'));
+    let name = path.file_stem().and_then(|stem| stem.to_str());
+    let stem = name.map(|stem| stem.trim_end_matches("_SI")).and_then(|stem| stem.rsplit_once('_'));
     let drawn = |(sweep, panel): (&str, &str)| {
         matches!((sweep, panel), ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios"))
+            || (sweep, panel) == ("measured", "loops")
             || (!sweep.is_empty()
                 && panel.len() == 1
                 && panel.bytes().all(|letter| letter.is_ascii_uppercase()))

@@ -9,6 +9,7 @@ use super::markup::described;
 use super::panels::Panel;
 use super::plot::plot_xy;
 use super::style::{OTHER, RESULT, THEORY, curve, shade};
+use super::units::Units;
 use super::{FigureError, markup};
 use crate::store::{Frame, LoopMaps};
 use ndarray::ArrayView2;
@@ -134,6 +135,7 @@ pub fn method_ratios(methods: &Frame) -> Result<Option<Panel>, FigureError> {
                    elements, each surface a point. Table methods: area_at_max_load_ratio, \
                    pull_off_load_ratio, loss_ratio over persson_tosatti_realised.";
     Ok(Some(Panel {
+        units: Units::Dimensionless,
         stem: drawn.stem.clone(),
         name: "ratios".to_owned(),
         svg: described(&plot_xy(&drawn), caption),

@@ -3,19 +3,27 @@
 use super::curve::{Curve, Stroke, XyPlot};
 use super::cycle_loop::Closer;
 use super::sweep::Sweep;
+use super::units::{Quantity, Scales};
 use crate::stats::{Values, significant};
 
 /// Values of one parameter that a caption lists; of more, it states the range.
 const MOST_VALUES: usize = 8;
 
 /// The caption of a panel of a sweep, by its letter.
-pub(super) fn of_sweep(letter: char, sweep: &Sweep, surfaces: &str, plot: &XyPlot) -> String {
+pub(super) fn of_sweep(
+    letter: char,
+    sweep: &Sweep,
+    surfaces: &str,
+    (plot, scales): (&XyPlot, &Scales<'_>),
+) -> String {
+    let symbol = |of: Quantity| plain(scales.label(of));
+    let (load, loss) = (symbol(Quantity::Load), symbol(Quantity::Loss));
     let what = match letter {
-        'A' => "Real contact area A/A₀ against normal force F/(E*A₀)",
-        'B' => "Pull-off force F_po/(E*A₀)",
-        'C' => "Mean penetration Δ/h_rms against normal force F/(E*A₀)",
-        'D' => "Dissipated energy Θ/(E*A₀h_rms), with the estimates of Deng and Kesari",
-        _ => "Dissipated energy of the events of each branch, over E*A₀h_rms",
+        'A' => format!("Real contact area {} against normal force {load}", symbol(Quantity::Area)),
+        'B' => format!("Pull-off force {}", symbol(Quantity::PullOff)),
+        'C' => format!("Mean penetration {} against normal force {load}", symbol(Quantity::Penetration)),
+        'D' => format!("Dissipated energy {loss}, with the estimates of Deng and Kesari"),
+        _ => format!("Dissipated energy {loss} of the events of each branch"),
     };
     let mut parts = vec![format!("{what}{}; {surfaces}", cases(sweep))];
     if matches!(letter, 'A' | 'C') {
@@ -37,6 +45,14 @@ pub(super) fn of_sweep(letter: char, sweep: &Sweep, surfaces: &str, plot: &XyPlo
         parts.push("crosses: single surfaces, where there are fewer than five".to_owned());
     }
     format!("{}.", parts.join("; "))
+}
+
+/// A label without its unit and without the markup of the figures, but for subscripts of letters.
+fn plain(label: &str) -> String {
+    let symbol = label.split_once(" [").map_or(label, |(symbol, _)| symbol);
+    [("_{0}", "₀"), ("^{*}", "*"), ("_{po}", "_po"), ("_{rms}", "_rms")]
+        .into_iter()
+        .fold(symbol.to_owned(), |text, (marked, plain)| text.replace(marked, plain))
 }
 
 /// Table of the points of a panel of a report.

@@ -11,6 +11,7 @@ use super::markup::described;
 use super::panels::Panel;
 use super::plot::plot_xy;
 use super::style::{OTHER, RESULT, THEORY, curve, entry, shade};
+use super::units::Units;
 use crate::stats::significant;
 use crate::store::Frame;
 use crate::text::counted;
@@ -62,6 +63,7 @@ fn panel(name: &str, caption: String, plot: XyPlot) -> Panel {
     let stem = format!("closer_{name}");
     let plot = XyPlot { stem: stem.clone(), ..plot };
     Panel {
+        units: Units::Dimensionless,
         stem,
         name: name.to_owned(),
         svg: described(&plot_xy(&plot), &caption),

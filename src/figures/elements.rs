@@ -8,6 +8,7 @@ use super::markup::described;
 use super::panels::Panel;
 use super::plot::plot_xy;
 use super::style::{RESULT, THEORY, curve, entry, shade};
+use super::units::Units;
 use super::{FigureError, captions};
 use crate::store::{Frame, LoopMaps};
 
@@ -41,7 +42,15 @@ pub fn elements_loop(of: &ElementsLoop<'_>) -> Result<(Panel, Option<Drawing>), 
         captions::data(NAME)
     );
     let svg = described(&plot_xy(&plot), &caption);
-    let panel = Panel { stem: NAME.to_owned(), name: NAME.to_owned(), caption, cases: Vec::new(), svg, plot };
+    let panel = Panel {
+        stem: NAME.to_owned(),
+        name: NAME.to_owned(),
+        units: Units::Dimensionless,
+        caption,
+        cases: Vec::new(),
+        svg,
+        plot,
+    };
     Ok((panel, of.maps.map(|maps| map(of.parameters, of.steps, maps)).transpose()?))
 }
 

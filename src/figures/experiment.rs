@@ -9,6 +9,7 @@ use super::markup::described;
 use super::panels::Panel;
 use super::plot::plot_xy;
 use super::style::{RESULT, case_colour, curve, entry, shade};
+use super::units::Units;
 use crate::store::Frame;
 
 /// Name of the panel in the table of panels.
@@ -66,7 +67,15 @@ pub fn measured_loops(measured: &Frame, simulated: Option<&Simulated<'_>>) -> Re
     );
     let plot = XyPlot { stem: NAME.to_owned(), key, ..plot(String::new(), x, y, curves, &[]) };
     let svg = described(&plot_xy(&plot), &caption);
-    Ok(Panel { stem: NAME.to_owned(), name: NAME.to_owned(), caption, cases: Vec::new(), svg, plot })
+    Ok(Panel {
+        stem: NAME.to_owned(),
+        name: NAME.to_owned(),
+        units: Units::Dimensionless,
+        caption,
+        cases: Vec::new(),
+        svg,
+        plot,
+    })
 }
 
 fn of_simulated(of: &Simulated<'_>) -> Result<[Curve; 2], FigureError> {

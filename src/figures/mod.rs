@@ -30,6 +30,7 @@ mod sensitivity;
 mod style;
 mod sweep;
 mod table;
+mod units;
 
 pub use axis::Axis;
 pub use both::{Both, both, method_ratios};
@@ -46,6 +47,7 @@ pub use plot::plot_xy;
 pub use sensitivity::sensitivity;
 pub use sweep::Tables;
 pub use table::table;
+pub use units::Units;
 
 use crate::stats::StatsError;
 use crate::store::FrameError;

@@ -8,17 +8,18 @@ use super::paths::paths;
 use super::plot::{plot_xy, width_beside};
 use super::results::{Measured, Predicted, results};
 use super::sweep::{Member, Sweep, Tables};
+use super::units::{Quantity, Scales, Units};
 use crate::store::Frame;
-
-const LOSS: &str = "Θ/(E^{*}A_{0}h_{rms})";
 
 /// A panel that has been drawn.
 #[derive(Debug, Clone)]
 pub struct Panel {
     /// Stem of its file's name.
     pub stem: String,
-    /// Letter, or its word.
+    /// Letter with the ending of its units, or its word.
     pub name: String,
+    /// Units; those of a panel of a single cycle are dimensionless.
+    pub units: Units,
     /// Caption.
     pub caption: String,
     /// Labels and colours of the cases of a sweep.
@@ -31,7 +32,7 @@ pub struct Panel {
 
 /// Draws the panels of one sweep: `<sweep>_A` area over load, `<sweep>_B` pull-off force, `<sweep>_C`
 /// penetration over load, `<sweep>_D` dissipated energy, with the prediction of Deng and Kesari, `<sweep>_E`
-/// its fraction on each branch.
+/// its fraction on each branch; in other units with an ending.
 ///
 /// The horizontal axis of B, D and E is the parameter that varies; if only the load reversal varies, it is
 /// the area at the end of loading. If several parameters vary, the first one is the axis, and the caption
@@ -44,7 +45,7 @@ pub struct Panel {
 ///
 /// # Errors
 /// If no case belongs to the sweep, or a table lacks a column.
-pub fn panels(tables: &Tables<'_>, sweep: &str) -> Result<Vec<Panel>, FigureError> {
+pub fn panels(tables: &Tables<'_>, sweep: &str, units: Units) -> Result<Vec<Panel>, FigureError> {
     let found = Sweep::find(tables.cases, sweep)?;
     let done = tables.cases.i64("done_count")?;
     if found.members.iter().all(|member| done.get(member.row).is_none_or(|count| *count == 0)) {
@@ -54,7 +55,7 @@ pub fn panels(tables: &Tables<'_>, sweep: &str) -> Result<Vec<Panel>, FigureErro
         .chars()
         .map(|letter| if letter.is_ascii_alphanumeric() || letter == '-' { letter } else { '_' })
         .collect();
-    let mut panels = drawn(tables, &found, &stem)?;
+    let mut panels = drawn(tables, &found, &stem, units)?;
     panels.iter_mut().for_each(|panel| panel.caption += &data(&panel.name));
     Ok(panels)
 }
@@ -65,12 +66,13 @@ pub fn panels(tables: &Tables<'_>, sweep: &str) -> Result<Vec<Panel>, FigureErro
 /// # Errors
 /// If a table lacks a column.
 pub fn compared(tables: &Tables<'_>, labels: &[String], stem: &str) -> Result<Vec<Panel>, FigureError> {
-    drawn(tables, &Sweep::side_by_side(tables.cases, labels)?, stem)
+    drawn(tables, &Sweep::side_by_side(tables.cases, labels)?, stem, Units::Dimensionless)
 }
 
-fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str) -> Result<Vec<Panel>, FigureError> {
+fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result<Vec<Panel>, FigureError> {
     let surfaces = surfaces(tables.cases, found)?;
-    let plots = plots(tables, found)?;
+    let scales = Scales::of(tables.cases, found, units)?;
+    let plots = plots(tables, found, &scales)?;
     // Adjacent panels have the same size.
     let margin = plots.iter().map(|(_, plot)| width_beside(plot)).fold(0.0, f64::max);
     // Where only the load varies, labels are numbers.
@@ -82,12 +84,13 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str) -> Result<Vec<Panel>, F
     let cases: Vec<(String, String)> =
         found.members.iter().map(|member| (named(member), member.colour.clone())).collect();
     let panel = |(letter, plot): (char, XyPlot)| {
-        let stem = format!("{stem}_{letter}");
+        let stem = format!("{stem}_{letter}{}", units.ending());
         let plot = XyPlot { letter, stem: stem.clone(), margin, ..plot };
-        let caption = of_sweep(letter, found, &surfaces, &plot);
+        let caption = of_sweep(letter, found, &surfaces, (&plot, &scales));
         Panel {
             stem,
-            name: letter.to_string(),
+            name: format!("{letter}{}", units.ending()),
+            units,
             svg: described(&plot_xy(&plot), &caption),
             caption,
             cases: cases.clone(),
@@ -98,7 +101,11 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str) -> Result<Vec<Panel>, F
 }
 
 /// The contents of the panels, by letter.
-fn plots(tables: &Tables<'_>, found: &Sweep) -> Result<Vec<(char, XyPlot)>, FigureError> {
+fn plots(
+    tables: &Tables<'_>,
+    found: &Sweep,
+    scales: &Scales<'_>,
+) -> Result<Vec<(char, XyPlot)>, FigureError> {
     // Releasing absorbed asperities has no potential, so that one branch may gain energy.
     let branch = |name, text, stroke| Measured { name, text, stroke, positive: false };
     let computed =
@@ -122,11 +129,11 @@ fn plots(tables: &Tables<'_>, found: &Sweep) -> Result<Vec<(char, XyPlot)>, Figu
         branch("dissipated_loading", "loading", Stroke::Dashed),
     ];
     Ok(vec![
-        ('A', paths(tables.curves, found, "area", "A/A_{0}", true)?),
-        ('B', results(tables, found, "F_{po}/(E^{*}A_{0})", &[computed("pull_off_load")], &[])?),
-        ('C', paths(tables.curves, found, "penetration", "Δ/h_{rms}", false)?),
-        ('D', results(tables, found, LOSS, &[computed("loss")], &theories)?),
-        ('E', results(tables, found, LOSS, &branches, &[])?),
+        ('A', paths(tables.curves, found, "area", (Quantity::Area, scales))?),
+        ('B', results(tables, found, (Quantity::PullOff, scales), &[computed("pull_off_load")], &[])?),
+        ('C', paths(tables.curves, found, "penetration", (Quantity::Penetration, scales))?),
+        ('D', results(tables, found, (Quantity::Loss, scales), &[computed("loss")], &theories)?),
+        ('E', results(tables, found, (Quantity::Loss, scales), &branches, &[])?),
     ])
 }
 

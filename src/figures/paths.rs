@@ -5,17 +5,15 @@ use super::axis::Axis;
 use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 use super::style::{MOST_NOTES, NEUTRAL, curve, entry};
 use super::sweep::{Member, Sweep};
+use super::units::{Quantity, Scales};
 use crate::store::Frame;
 
-const LOAD: &str = "F/(E^{*}A_{0})";
-
-/// Loading and unloading paths of every member, of a quantity that may be one that cannot be negative.
+/// Loading and unloading paths of every member, of a quantity in some units. The area cannot be negative.
 pub(super) fn paths(
     table: &Frame,
     sweep: &Sweep,
     column: &str,
-    label: &str,
-    positive: bool,
+    (quantity, scales): (Quantity, &Scales<'_>),
 ) -> Result<XyPlot, FigureError> {
     let (ids, branches) = (table.text("case_id")?, table.text("branch")?);
     let (max_loads, loads, values) =
@@ -28,12 +26,15 @@ pub(super) fn paths(
                 && max_loads.get(*row) == Some(&max_load)
         };
         let rows: Vec<usize> = (0..table.row_count()).filter(of_it).collect();
-        let point = |row: &usize| loads.get(*row).copied().zip(values.get(*row).copied());
-        let points = rows.iter().filter_map(point).collect();
-        let errors: Vec<Option<f64>> = rows.iter().map(|row| spreads.get(*row).copied().flatten()).collect();
+        let unit = |of: Quantity| scales.factor(of, member.row);
+        let (unit_x, unit_y) = unit(Quantity::Load).zip(unit(quantity)).unwrap_or((f64::NAN, f64::NAN));
+        let point = |row: &usize| Some((unit_x * loads.get(*row)?, unit_y * values.get(*row)?));
+        let points = rows.iter().filter_map(point).filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+        let error = |row: &usize| spreads.get(*row).copied().flatten().map(|spread| unit_y * spread);
+        let errors: Vec<Option<f64>> = rows.iter().map(error).collect();
         let band = errors.iter().any(Option::is_some);
         let of_path = curve(branch, &member.label, points, member.colour.clone(), stroke);
-        Curve { errors, band, positive, ..of_path }
+        Curve { errors, band, positive: quantity == Quantity::Area, ..of_path }
     };
     let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
     let beside = !sweep.differing.is_empty();
@@ -64,8 +65,8 @@ pub(super) fn paths(
     // Numbers at the ends need room to the right of the last one.
     let room = if beside || notes.is_empty() { 0.0 } else { 0.1 };
     let (x, y) = (
-        Axis::holding(LOAD, all().map(|point| point.0), true).with_headroom(room),
-        Axis::holding(label, curves.iter().flat_map(Curve::heights), true),
+        Axis::holding(scales.label(Quantity::Load), all().map(|point| point.0), true).with_headroom(room),
+        Axis::holding(scales.label(quantity), curves.iter().flat_map(Curve::heights), true),
     );
     Ok(XyPlot {
         stem: String::new(),

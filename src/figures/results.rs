@@ -5,6 +5,7 @@ use super::axis::Axis;
 use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 use super::style::{MOST_NOTES, NEUTRAL, THEORY, curve, entry, shade};
 use super::sweep::{Member, Sweep, Tables};
+use super::units::{Quantity, Scales};
 use crate::stats::{FEW, singles};
 
 /// A result to be drawn, and how.
@@ -40,11 +41,11 @@ struct Drawn {
     notes: Vec<Note>,
 }
 
-/// Results of every member, with the single surfaces or error bars, and predictions of them.
+/// Results of every member in some units, with the single surfaces or error bars, and predictions of them.
 pub(super) fn results(
     tables: &Tables<'_>,
     sweep: &Sweep,
-    label: &str,
+    (quantity, scales): (Quantity, &Scales<'_>),
     measured: &[Measured],
     theories: &[Predicted],
 ) -> Result<XyPlot, FigureError> {
@@ -55,13 +56,14 @@ pub(super) fn results(
     if sweep.differing.is_empty() {
         series.truncate(1);
     }
+    let unit = |row: usize| scales.factor(quantity, row);
     let mut predicted = Drawn::default();
     for theory in theories {
-        predict(tables, sweep, &series, *theory, &mut predicted)?;
+        predict(tables, sweep, &series, *theory, &unit, &mut predicted)?;
     }
     let mut computed = Drawn::default();
     for of in measured {
-        measure(tables, sweep, &series, of, &mut computed)?;
+        measure(tables, sweep, &series, of, &unit, &mut computed)?;
     }
     let crosses = computed.curves.iter().any(|curve| curve.stroke == Stroke::Crosses);
     let cut = computed.curves.iter().any(Curve::is_cut);
@@ -75,7 +77,8 @@ pub(super) fn results(
     key.extend(predicted.key);
     let curves: Vec<Curve> = predicted.curves.into_iter().chain(computed.curves).collect();
     let room = 0.07 * key.len() as f64 + 0.04;
-    let y = Axis::holding(label, curves.iter().flat_map(Curve::heights), true).with_headroom(room);
+    let y = Axis::holding(scales.label(quantity), curves.iter().flat_map(Curve::heights), true)
+        .with_headroom(room);
     let x = sweep.axis.clone();
     Ok(XyPlot {
         stem: String::new(),
@@ -90,6 +93,9 @@ pub(super) fn results(
     })
 }
 
+/// Factor of the values of a row of the table `cases`.
+type Unit<'a> = &'a dyn Fn(usize) -> Option<f64>;
+
 /// The members that one line joins.
 fn joined<'a>(sweep: &'a Sweep, series: &'a str) -> impl Iterator<Item = &'a Member> {
     sweep.members.iter().filter(move |member| sweep.differing.is_empty() || member.series == series)
@@ -101,12 +107,14 @@ fn predict(
     sweep: &Sweep,
     series: &[&str],
     Predicted { name: theory, stroke, text, abbreviation }: Predicted,
+    unit: Unit<'_>,
     drawn: &mut Drawn,
 ) -> Result<(), FigureError> {
     let means = tables.cases.f64_or_null(&format!("{theory}_mean"))?;
     let (mut any, mut marked) = (false, false);
     for (at, name) in series.iter().enumerate() {
-        let points: Vec<(f64, f64)> = joined(sweep, name).filter_map(|member| point(means, member)).collect();
+        let points: Vec<(f64, f64)> =
+            joined(sweep, name).filter_map(|member| point(means, member, unit)).collect();
         if let Some(end) = points.last()
             && series.len() > 1
             && series.len() <= MOST_LABELLED
@@ -133,6 +141,7 @@ fn measure(
     sweep: &Sweep,
     series: &[&str],
     of: &Measured,
+    unit: Unit<'_>,
     drawn: &mut Drawn,
 ) -> Result<(), FigureError> {
     let Measured { name, text, stroke, positive } = *of;
@@ -141,8 +150,9 @@ fn measure(
     let mut spread = false;
     for (at, series_name) in series.iter().enumerate() {
         let members: Vec<&Member> =
-            joined(sweep, series_name).filter(|member| point(means, member).is_some()).collect();
-        let points: Vec<(f64, f64)> = members.iter().filter_map(|member| point(means, member)).collect();
+            joined(sweep, series_name).filter(|member| point(means, member, unit).is_some()).collect();
+        let points: Vec<(f64, f64)> =
+            members.iter().filter_map(|member| point(means, member, unit)).collect();
         if let Some(end) = points.last()
             && series.len() > 1
             && at % series.len().div_ceil(MOST_NOTES) == 0
@@ -152,10 +162,11 @@ fn measure(
         let (mut errors, mut crosses, mut hues) = (Vec::new(), Vec::new(), Vec::new());
         for member in &members {
             let values = singles(tables.cases, tables.realizations, member.row, name)?;
-            let few = values.len() < FEW;
-            errors.push(sds.get(member.row).copied().flatten().filter(|_| !few));
+            let (few, scale) = (values.len() < FEW, unit(member.row).unwrap_or(1.0));
+            errors.push(sds.get(member.row).copied().flatten().filter(|_| !few).map(|sd| scale * sd));
             // The mark of one surface is its mean.
-            let own = values.iter().filter(|_| few && values.len() > 1).map(|value| (member.x, *value));
+            let own =
+                values.iter().filter(|_| few && values.len() > 1).map(|value| (member.x, scale * value));
             crosses.extend(own);
             hues.resize(crosses.len(), member.colour.clone());
         }
@@ -181,7 +192,7 @@ fn measure(
     Ok(())
 }
 
-fn point(means: &[Option<f64>], member: &Member) -> Option<(f64, f64)> {
-    let mean = means.get(member.row).copied().flatten()?;
+fn point(means: &[Option<f64>], member: &Member, unit: Unit<'_>) -> Option<(f64, f64)> {
+    let mean = means.get(member.row).copied().flatten()? * unit(member.row)?;
     member.x.is_finite().then_some((member.x, mean))
 }

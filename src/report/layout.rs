@@ -1,6 +1,6 @@
 //! Common parts of HTML pages: document, style, text markup and grids of figures.
 
-use crate::figures::{Drawing, Panel};
+use crate::figures::{Drawing, Panel, Units};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::cell::Cell;
 
@@ -131,14 +131,42 @@ pub(super) fn plain(text: &str) -> Markup {
 
 /// Panels in a grid, each with number, caption and links to its files.
 pub(super) fn grid<'a>(numbers: &Numbers<'_>, panels: impl IntoIterator<Item = &'a Panel>) -> Markup {
+    numbered(numbers, numbers.next(), panels)
+}
+
+/// The panels of a sweep in both units, with one number; a switch of the page chooses the units.
+pub(super) fn grids(numbers: &Numbers<'_>, panels: &[&Panel]) -> Markup {
     let number = numbers.next();
+    html! {
+        @for (units, class) in [(Units::Dimensionless, "dimensionless"), (Units::Si, "si")] {
+            div class=(class) {
+                (numbered(numbers, number, panels.iter().copied().filter(|panel| panel.units == units)))
+            }
+        }
+    }
+}
+
+/// Switch between the units of the report.
+pub(super) fn switch(is_si: bool) -> Markup {
+    html! {
+        p.switch.screen {
+            "Units of figures and results: "
+            label { input type="radio" name="units" value="dimensionless" checked[!is_si]; " dimensionless" }
+            " "
+            label { input type="radio" name="units" value="si" checked[is_si]; " SI" }
+        } "\n"
+    }
+}
+
+fn numbered<'a>(numbers: &Numbers<'_>, number: usize, panels: impl IntoIterator<Item = &'a Panel>) -> Markup {
     let label = |name: &str| {
         if name.chars().count() > 1 { format!(", {}", name.replace('_', " ")) } else { name.to_owned() }
     };
     html! {
         div.panels {
             "\n"
-            @for Panel { stem, name, caption, svg, .. } in panels {
+            @for Panel { stem, name, units, caption, svg, .. } in panels {
+                @let name = name.trim_end_matches(units.ending());
                 figure {
                     (PreEscaped(svg))
                     figcaption {

@@ -32,7 +32,7 @@ use crate::store::hdf5::SurfaceHeader;
 use crate::text::counted;
 use cases::Cases;
 use data::Study;
-use layout::{Numbers, document, grid, heading, legend, prose};
+use layout::{Numbers, document, grids, heading, legend, prose, switch};
 use maud::{Markup, PreEscaped, html};
 
 /// Content of the report of a run.
@@ -58,6 +58,8 @@ pub struct Report<'a> {
     pub realizations: &'a Frame,
     /// Table `methods`.
     pub methods: &'a Frame,
+    /// True if the page opens with SI units: the spec has a probe, or loads in newtons or pascals.
+    pub is_in_si: bool,
     /// Formats of the files of the figures.
     pub formats: &'a [&'static str],
     /// Relative differences from the reference case.
@@ -131,6 +133,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
                      computes the pending cycles." } } "\n"
             }
             (header::facts(report.cases, report.seed, report.realizations_text)?)
+            @if has_results { (switch(report.is_in_si)) }
             (header::contents(&body))
         }
         "\n"
@@ -171,7 +174,7 @@ fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
             p { "No cycle of this sweep has finished." } "\n"
         } @else {
             section {
-                (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grid(numbers, panels))
+                (legend(panels.first().map_or(&[], |panel| &panel.cases))) (grids(numbers, &panels))
             } "\n"
         }
     }

@@ -63,7 +63,7 @@ pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     Ok(html! {
         (heading("Results"))
         p { (note(cases.reference())) } "\n"
-        (table(cases, "results", &RESULTS)?)
+        div.dimensionless { (table(cases, "results", &RESULTS)?) }
         p { (prose(IN_SI_NOTE)) } "\n"
         (table(cases, "results-si", &IN_SI)?)
         @if cases.frame.f64_or_null("probe_radius_m")?.iter().any(Option::is_some) {

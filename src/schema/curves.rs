@@ -90,7 +90,7 @@ pub static PANELS: Table = Table {
         text(
             "panel",
             "Panel: A contact area, B pull-off force, C mean penetration, D dissipated energy, E dissipated \
-             energy by branch; a name for a single cycle",
+             energy by branch, with the ending _SI in the units of the labels; a name for a single cycle",
         ),
         index("curve", "Number of the curve in the panel, from 0"),
         text("name", "Quantity of the curve: a branch, a column of the table cases without _mean, or a name"),

@@ -9,7 +9,7 @@ use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
 use super::{StageError, Tally};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Drawing, Panel, Tables, file, method_ratios, panels, sensitivity, table};
+use crate::figures::{Drawing, Panel, Tables, Units, file, method_ratios, panels, sensitivity, table};
 use crate::report::{self, Failure, MeasuredLoops, MethodFigures, Report, SingleCycle};
 use crate::schema;
 use crate::spec::Figures;
@@ -55,7 +55,9 @@ impl Drawings {
         let tables = Tables { cases, curves, realizations };
         let mut drawn = Vec::new();
         for sweep in sweeps(campaign) {
-            drawn.extend(panels(&tables, &sweep)?.into_iter().map(|panel| (sweep.clone(), panel)));
+            for units in Units::ALL {
+                drawn.extend(panels(&tables, &sweep, units)?.into_iter().map(|panel| (sweep.clone(), panel)));
+            }
         }
         Ok(Self {
             panels: drawn,
@@ -163,6 +165,7 @@ fn page(
         cases: &statistics.cases,
         realizations: &statistics.realizations,
         methods: &statistics.methods,
+        is_in_si: is_in_si(campaign),
         formats: &campaign.spec.figures.written(),
         sensitivity: drawings.sensitivity.as_ref(),
         method_figures: &drawings.methods,
@@ -174,6 +177,13 @@ fn page(
         explorer: explorer(campaign, standings, &statistics.cases, &statistics.methods)?.as_deref(),
         spec: &campaign.labelled_toml(),
     })?)
+}
+
+/// True if the spec has a probe, or loads in newtons or pascals.
+fn is_in_si(campaign: &Campaign) -> bool {
+    let base = &campaign.spec.base;
+    let has_probe = campaign.cases.iter().any(|unit| unit.case.params.probe.is_some());
+    has_probe || !base.max_force_n.is_empty() || !base.max_pressure_pa.is_empty()
 }
 
 /// The words of a text without its numbers.

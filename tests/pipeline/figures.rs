@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hysteron::figures::{FigureError, Panel, Stroke, Tables, panels, table};
+use hysteron::figures::{FigureError, Panel, Stroke, Tables, Units, panels, table};
 use hysteron::figures::{described, plot_xy};
 use hysteron::stats::{CaseInput, cases, curves, realizations};
 use hysteron::store::Frame;
@@ -16,7 +16,7 @@ pub type Result = (f64, f64, f64, f64);
 pub type Made = (Frame, Frame, Frame);
 
 pub fn panels_of((cases, curves, realizations): &Made, sweep: &str) -> std::result::Result<Vec<Panel>, FigureError> {
-    panels(&Tables { cases, curves, realizations }, sweep)
+    panels(&Tables { cases, curves, realizations }, sweep, Units::Dimensionless)
 }
 
 pub fn tables(inputs: &[(CaseInput, Result)], realization_count: i32) -> Made {
@@ -153,6 +153,27 @@ fn e2e_magnification_sweep_has_five_panels() {
     assert_eq!((paths(&drawn[1].1, Some("7 4")), paths(&drawn[1].1, None)), (0, 1));
     assert_eq!((paths(&drawn[3].1, Some("7 4")), paths(&drawn[3].1, Some("1.5 3.5")), paths(&drawn[3].1, None)), (1, 1, 1));
     assert!(read(&drawn[3].1).contains("Deng–Kesari") && read(&drawn[1].1).contains("magnification ζ"));
+}
+
+/// Panels in SI units have the dimensionless columns times E* = 1e6 Pa in kPa, and times E* h_rms = 5 J/m² in mJ/m², to rounding.
+#[test]
+fn val_panels_in_si_units() {
+    let (cases, curves, realizations) = fig4();
+    let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations };
+    let panels = panels(&tables, "fig4", Units::Si).unwrap();
+    let sorted = |mut numbers: Vec<f64>| {
+        numbers.sort_by(f64::total_cmp);
+        numbers
+    };
+    for (letter, curve, column, unit) in [("B_SI", "pull_off_load", "pull_off_load_mean", 1e3), ("D_SI", "loss", "loss_mean", 5e3)] {
+        let panel = panels.iter().find(|panel| panel.name == letter).unwrap();
+        let drawn = panel.plot.curves.iter().filter(|of| of.name == curve).flat_map(|of| of.points.iter().map(|point| point.1));
+        let wanted = cases.f64_or_null(column).unwrap().iter().map(|value| unit * value.unwrap());
+        let (drawn, wanted) = (sorted(drawn.collect()), sorted(wanted.collect()));
+        assert_eq!(drawn.len(), wanted.len(), "{letter}");
+        assert!(drawn.iter().zip(&wanted).all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{letter}: {drawn:?}, {wanted:?}");
+    }
+    assert!(read(&panels[0].svg).contains("F/A0 [kPa]") && read(&panels[3].svg).contains("Θ/A0 [mJ/m²]"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Probe, machine and layer before a run: the smooth sphere by JKR beside the grid and the square.
+//! Probe, machine and layer before a run: the smooth sphere by JKR, over the grid spacing and the side.
 
 use super::verdicts::range;
 use crate::campaign::Campaign;
