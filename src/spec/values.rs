@@ -85,7 +85,7 @@ impl Values {
     /// asperity model.
     #[must_use]
     pub fn case(&self) -> CaseParams {
-        let surface = if self.measured.file.is_empty() {
+        let surface = if !self.measured.is_named() {
             SurfaceSource::Generated(generated(&self.generated))
         } else {
             let points_per_shortest_wavelength = self.generated.points_per_shortest_wavelength;
@@ -138,7 +138,7 @@ impl Values {
 
     /// Side of the nominal square \[m\]; of a measured surface nothing unless the spec states it.
     pub(super) fn length_m(&self) -> Option<f64> {
-        if self.measured.file.is_empty() {
+        if !self.measured.is_named() {
             return Some(self.generated.length_m);
         }
         let MeasuredSurface { size_m, size_y_m, .. } = self.measured;

@@ -14,6 +14,7 @@ mod done;
 mod error;
 mod estimates;
 mod experiment;
+mod extent;
 mod explorer;
 mod explorer_maps;
 mod extract;

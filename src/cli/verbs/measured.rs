@@ -117,6 +117,7 @@ fn params(asked: &ImportArguments) -> Result<MeasuredSurface, Fault> {
     let [size_m, size_y_m] = size_m(asked)?;
     Ok(MeasuredSurface {
         file: asked.file.to_string_lossy().into_owned(),
+        files: Vec::new(),
         dataset: asked.dataset.clone().unwrap_or_default(),
         periodic: asked.periodic,
         pixel_m: asked.pixel_m.unwrap_or_default(),
