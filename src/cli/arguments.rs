@@ -132,9 +132,10 @@ pub(super) struct ExportArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
-    /// Measured surface
-    pub(super) file: PathBuf,
-    /// File to write [default: <name of FILE>.h5]
+    /// Measured surface; several, or a container (zip), are scans of one sample
+    #[arg(required = true, value_name = "FILE")]
+    pub(super) files: Vec<PathBuf>,
+    /// File to write [default: <name of FILE>.h5]; of several scans a folder
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
     /// Dataset (HDF5) or variable (NetCDF) of a file with several

@@ -8,7 +8,7 @@ use super::error::incomplete;
 use super::measured_loop::{self, MeasuredLoop, measure_loop};
 use super::runner::{Context, Single, run_single};
 use super::surface::scale;
-use super::{StageError, Tally, datapackage};
+use super::{StageError, Tally, datapackage, spectra};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Choice;
 use crate::spec::CaseParams;
@@ -86,6 +86,12 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     if let Some(loops) = measured_loops(campaign)? {
         files.push(write(&measured_loop::rows(&loops)?)?);
         files.push(write(&measured_loop::steps(&loops)?)?);
+    }
+    let samples = spectra::samples(campaign)?;
+    if !samples.is_empty() {
+        files.push(write(&spectra::scans_table(&samples)?)?);
+        files.push(write(&spectra::scan_spectra_table(&samples)?)?);
+        files.push(write(&spectra::spectrum_table(&samples)?)?);
     }
     let finished: Vec<bool> = standings.iter().map(|standing| *standing == Standing::Done).collect();
     for (place, text) in datapackage::files(campaign, &finished) {

@@ -33,6 +33,7 @@ mod report;
 mod runner;
 mod sampling;
 mod single_cycle;
+mod spectra;
 mod surface;
 mod task;
 mod verdict;
@@ -50,6 +51,7 @@ pub use measured_loop::{MeasuredLoop, half_width, measure_loop};
 pub use outside::in_words;
 pub use pipeline::{prepare, run};
 pub use sampling::sampled;
+pub use spectra::{Sample, SampleScan, csv as psd_csv, scans_table};
 pub use task::{Tally, Task, Watch};
 pub use verdict::{Verdict, chosen_method};
 

@@ -136,6 +136,12 @@ pub fn read(path: &Path, format: Format, asked: &Asked<'_>) -> Result<Scan, Stor
     .map_err(|cause| StoreError::new("read the surface from", path, cause))
 }
 
+/// True for a NetCDF-3 file whose heights are those of a line scan.
+#[must_use]
+pub fn is_line_scan(path: &Path) -> bool {
+    fenced(|| netcdf::is_line(Source::open(path)?)).unwrap_or_default()
+}
+
 impl Asked<'_> {
     /// Refuses properties of a text for another format.
     pub(super) fn of_text(&self, format: &str) -> Result<(), Cause> {

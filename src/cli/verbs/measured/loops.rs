@@ -15,19 +15,19 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// True if the file is a loop: by an option for loops, or by its heading.
-pub(super) fn is_meant(asked: &ImportArguments) -> bool {
+pub(super) fn is_meant(asked: &ImportArguments, file: &Path) -> bool {
     let of = &asked.of_loop;
-    of.is_loop || of.force_column.is_some() || of.displacement_column.is_some() || is_force_curve(&asked.file)
+    of.is_loop || of.force_column.is_some() || of.displacement_column.is_some() || is_force_curve(file)
 }
 
 /// Evaluates a loop.
-pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
-    let options = options(asked)?;
-    let source = asked.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let found = measure_loop(&asked.file, &source, &options).map_err(failed)?;
-    let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
+pub(super) fn import(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> {
+    let options = options(asked, file)?;
+    let source = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let found = measure_loop(file, &source, &options).map_err(failed)?;
+    let out = asked.out.clone().unwrap_or_else(|| named_after(file));
     if !asked.dry_run {
-        may_be_written("the loop", &out, &asked.file, asked.force)?;
+        may_be_written("the loop", &out, file, asked.force)?;
         let steps = found.steps().map_err(failed)?;
         let keys = [
             ("measured", "true".to_owned()),
@@ -41,7 +41,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     if asked.json {
         say(&format!("{:#}\n", answer(&found, written)))?;
     } else {
-        say(&text(&found, &asked.file, written))?;
+        say(&text(&found, file, written))?;
     }
     Ok(0)
 }
@@ -53,10 +53,10 @@ fn named_after(file: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn options(asked: &ImportArguments) -> Result<LoopOptions, Fault> {
+fn options(asked: &ImportArguments, file: &Path) -> Result<LoopOptions, Fault> {
     let of = &asked.of_loop;
     let refused = |name: &str, value: &str, help: &str| {
-        failed(format!("cannot import {}: {name} is {value}\nhelp: {help}", asked.file.display()))
+        failed(format!("cannot import {}: {name} is {value}\nhelp: {help}", file.display()))
     };
     for (name, value) in [("--modulus", of.modulus), ("--machine-stiffness", of.machine_stiffness)] {
         if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {

@@ -247,16 +247,22 @@ fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
 
 /// The written file and a spec for it.
 fn spec(path: &Path, of: &Statistics<'_>) -> String {
-    let periodic = if of.header.periodic { "periodic = true\n" } else { "" };
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let stem: String = stem.chars().filter(|c| c.is_ascii_alphanumeric()).take(32).collect();
-    let file = quoted(&path.to_string_lossy());
+    let file = format!("file = {}", quoted(&path.to_string_lossy()));
     format!(
-        "Written: {}. Spec for this surface; replace the material constants:\n\n\
-         name = \"of_{stem}\"\n[surface]\nfile = {file}\n{periodic}{}[cycle]\nmax_load = [0.004]       # \
-              F/(E* A0)\n",
+        "Written: {}. Spec for this surface; replace the material constants:\n\n{}",
         path.display(),
-        of.range.spec(of.header.periodic)
+        spec_of(&format!("of_{stem}"), &file, of.header.periodic, of.range)
+    )
+}
+
+/// A spec for measured surfaces with this line of files.
+pub(super) fn spec_of(name: &str, files: &str, is_periodic: bool, range: &Range<'_>) -> String {
+    let periodic = if is_periodic { "periodic = true\n" } else { "" };
+    format!(
+        "name = \"{name}\"\n[surface]\n{files}\n{periodic}{}[cycle]\nmax_load = [0.004]       # F/(E* A0)\n",
+        range.spec(is_periodic)
     )
 }
 
@@ -273,7 +279,7 @@ pub(super) const LOW_M: f64 = 1e-10;
 
 /// Warnings: what the central square leaves out, units or values that are unlikely, and a spectrum that is
 /// not self-affine.
-fn cautions(header: &SurfaceHeader) -> Vec<String> {
+pub(super) fn cautions(header: &SurfaceHeader) -> Vec<String> {
     let mut cautions = Vec::new();
     if let Some(of) = &header.measured {
         let ([rows, columns], dropped) = (of.source_point_counts, of.dropped(header.length_m));
