@@ -75,7 +75,8 @@ fn of_scans(tables: &Spectra<'_>, case: &str) -> Result<(Vec<Curve>, Vec<KeyEntr
         let last = rows.iter().rposition(|k| reliable[*k]).unwrap_or_default();
         let colour = case_colour(place, 0, 1);
         let mut add = |name: &str, points: Vec<(f64, f64)>, stroke: Stroke| {
-            if !points.is_empty() {
+            // One point outside would be drawn as a mark.
+            if points.len() > 1 || stroke == Stroke::Solid && points.len() == 1 {
                 curves.push(curve(name, case, points, colour.clone(), stroke));
             }
         };

@@ -13,11 +13,14 @@ use serde_json::Value;
 use zip::ZipArchive;
 
 use super::error::{Cause, StoreError, fenced};
+use crate::formats::is_of_container;
 
 /// Metadata of a container.
 const INDEX: &str = "index.json";
 /// Metadata of containers of earlier versions.
 const EARLIER_INDEX: &str = "meta.yml";
+/// Bytes from which the first part is recognised.
+const FIRST: u64 = 512;
 /// Bytes that the metadata may have.
 const MOST_INDEX: u64 = 1 << 26;
 /// Parts that an archive may have.
@@ -68,14 +71,18 @@ impl Container {
 
     fn read(path: &Path) -> Result<Option<Self>, Cause> {
         let mut first = Vec::new();
-        File::open(path)?.take(4).read_to_end(&mut first)?;
-        if first != *b"PK\x03\x04" {
+        File::open(path)?.take(FIRST).read_to_end(&mut first)?;
+        if !first.starts_with(b"PK\x03\x04") {
             return Ok(None);
         }
         let damaged = |error: zip::result::ZipError| -> Cause {
             format!("damaged zip archive: {error}\nhelp: download or copy the file again").into()
         };
-        let mut archive = ZipArchive::new(BufReader::new(File::open(path)?)).map_err(damaged)?;
+        let mut archive = match ZipArchive::new(BufReader::new(File::open(path)?)) {
+            Ok(archive) => archive,
+            // The reader of X3P reports a damaged scan.
+            Err(error) => return if begins_container(&first) { Err(damaged(error)) } else { Ok(None) },
+        };
         if archive.len() > MOST_PARTS {
             return Err(format!("the archive has {} parts, at most {MOST_PARTS} are read", archive.len()).into());
         }
@@ -123,6 +130,12 @@ impl Container {
         };
         fenced(write).map_err(|cause| StoreError::new("read the container", &self.path, cause))
     }
+}
+
+/// True if the first part of an archive is one of a container: its name begins at byte 30.
+fn begins_container(first: &[u8]) -> bool {
+    let length = first.get(26).copied().map_or(0, usize::from);
+    first.get(30..30 + length).is_some_and(is_of_container)
 }
 
 /// Name of a file without its folders.

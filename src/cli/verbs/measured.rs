@@ -107,6 +107,7 @@ fn surface(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> {
         notes: &notes,
         range: &range,
         counts,
+        fitted_1_m: prepared.fit.as_ref().filter(|_| height_factor_m.is_some()).map(|fit| fit.band_1_m),
         written,
     };
     if asked.json {

@@ -11,6 +11,7 @@ mod living;
 mod measured;
 mod outputs;
 mod place;
+mod psd;
 mod show;
 mod spectra;
 mod submit;
@@ -123,6 +124,7 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         Verb::Export { what: ExportVerb::RoCrate { folder, license, publisher, force } } => {
             export::ro_crate(folder, license.as_deref(), publisher.as_deref(), *force)
         }
+        Verb::Export { what: ExportVerb::Psd(asked) } => psd::export(asked),
         Verb::Export { what: ExportVerb::Netcdf(asked) } => {
             measured::export(asked, &measured::Layout::NetCdf)
         }

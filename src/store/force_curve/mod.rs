@@ -206,6 +206,16 @@ impl Chosen {
                 .position(|column| column.is_called(name))
                 .ok_or_else(|| format!("no column {name:?} ({option})\nhelp: the columns are {}", listed()))
         };
+        if let Some(twin) = (1..columns.len())
+            .map(|place| &columns[place])
+            .find(|column| columns.iter().filter(|other| other.text == column.text).count() > 1)
+        {
+            return Err(format!(
+                "two columns are named {:?}\nhelp: give them different names in the heading, so that it is clear \
+                 which one is read",
+                twin.text
+            ));
+        }
         let first = |wanted: &dyn Fn(Role) -> bool| {
             columns.iter().position(|column| column.role().is_some_and(wanted))
         };

@@ -34,6 +34,9 @@ pub(super) use numbers::room;
 /// Points that a scan may have: as many heights take 2 GiB of memory.
 pub const MOST_POINTS: u64 = 1 << 28;
 
+/// Error of a file that was cut off.
+const CUT: &str = "the file ends within the header\nhelp: copy or download the file again";
+
 /// A height field as a file has it.
 #[derive(Debug, Clone)]
 pub struct Scan {

@@ -163,7 +163,7 @@ impl Header {
         match self.variables.iter().find(|variable| end(variable).is_none_or(|end| end > length)) {
             None => Ok(()),
             Some(cut) => {
-                Err(format!("the file ends within variable {:?}; it was probably truncated", cut.name).into())
+                Err(format!("the file ends within variable {:?}; it was probably truncated\nhelp: copy or download the file again", cut.name).into())
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::store::container::{Container, Member};
 use crate::store::scan::is_line_scan;
 use crate::text::shown;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use tempfile::TempDir;
 
 /// A scan to be read.
 pub(super) struct Input {
@@ -33,42 +33,12 @@ pub(super) struct Left {
     pub(super) is_failure: bool,
 }
 
-/// Temporary folder, which is removed in the end.
-pub(super) struct Work(PathBuf);
-
-/// Number of temporary folders of this process.
-static COUNT: AtomicU32 = AtomicU32::new(0);
-
-impl Work {
-    pub(super) fn new() -> std::io::Result<Self> {
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = format!("hysteron-import-{}-{number}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir(&path)?;
-        Ok(Self(path))
-    }
-
-    /// A new folder in it.
-    fn folder(&self) -> std::io::Result<PathBuf> {
-        let path = self.0.join(COUNT.fetch_add(1, Ordering::Relaxed).to_string());
-        std::fs::create_dir(&path)?;
-        Ok(path)
-    }
-}
-
-impl Drop for Work {
-    fn drop(&mut self) {
-        // A folder that remains is in the system's place for such files.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 const LINE: &str = "line scan: left out, since a contact needs an area";
 
 /// Scans of all files, those that are left out, and notes on containers.
 pub(super) fn inputs(
     asked: &ImportArguments,
-    work: &Work,
+    work: &TempDir,
 ) -> Result<(Vec<Input>, Vec<Left>, Vec<String>), Fault> {
     let (mut found, mut left, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     for file in &asked.files {
@@ -110,7 +80,7 @@ fn unpacked(
     archive: &str,
     container: &Container,
     member: &Member,
-    work: &Work,
+    work: &TempDir,
 ) -> Result<Input, Left> {
     let label = format!("{archive}: {}", member.name);
     let is_line = member.size.len() == 1;
@@ -125,7 +95,8 @@ fn unpacked(
         );
         return Err(left(why, true));
     }
-    let folder = work.folder().map_err(|error| left(error.to_string(), true))?;
+    // Files of one name in different folders of the archive.
+    let folder = tempfile::tempdir_in(work).map(TempDir::keep).map_err(|error| left(error.to_string(), true))?;
     let path = container.extract(member, &folder).map_err(|error| left(error.source.to_string(), true))?;
     match recognize(&path) {
         Err(error) => return Err(left(error.to_string(), true)),

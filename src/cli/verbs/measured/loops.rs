@@ -46,6 +46,9 @@ pub(super) fn import(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> 
     Ok(0)
 }
 
+/// Radii of probes \[m\]: a number without a unit is in metres, and 20 for 20 µm is refused.
+const PROBES_M: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
+
 /// `<name of the file>_loop.parquet` in the present folder.
 fn named_after(file: &Path) -> PathBuf {
     let mut name = file.file_stem().unwrap_or(file.as_os_str()).to_owned();
@@ -66,7 +69,11 @@ fn options(asked: &ImportArguments, file: &Path) -> Result<LoopOptions, Fault> {
     let probe_radius_m = match of.probe_radius.as_deref() {
         None => None,
         Some(text) => match sizes(text).as_deref() {
-            Some([radius]) if *radius > 0.0 && radius.is_finite() => Some(*radius),
+            Some([radius]) if PROBES_M.contains(radius) => Some(*radius),
+            Some([radius]) if radius.is_finite() && *radius > 0.0 => {
+                let help = "give a length with its unit (20um), or in metres (2e-5); radii are 1 nm to 1 m";
+                return Err(refused("--probe-radius", &format!("{text:?}, read as {radius:e} m"), help));
+            }
             _ => {
                 let help = "give a length with its unit (20um), or in metres (2e-5)";
                 return Err(refused("--probe-radius", &format!("{text:?}"), help));

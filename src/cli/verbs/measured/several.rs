@@ -2,7 +2,7 @@
 
 use super::super::outputs::may_be_written;
 use super::super::{FAILED_CASES, Fault, failed, make_folder, say};
-use super::inputs::{Input, Left, Work, inputs};
+use super::inputs::{Input, Left, inputs};
 use super::range::Range;
 use super::several_text::{Shown, answer, text};
 use super::{ImportArguments, check_options};
@@ -28,7 +28,8 @@ pub(super) struct Taken {
 /// Imports all scans that can be read, and names the others.
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     check_options(asked, &asked.files[0])?;
-    let work = Work::new().map_err(failed)?;
+    // It is removed in the end.
+    let work = tempfile::tempdir().map_err(failed)?;
     let folder = asked.out.clone().unwrap_or_else(|| named_after(&asked.files[0]));
     let (found, mut left, notes) = inputs(asked, &work)?;
     let mut taken = Vec::new();
@@ -160,19 +161,20 @@ fn write(
     sample: &Sample,
 ) -> Result<Vec<PathBuf>, Fault> {
     let others = [folder.join("scans.parquet"), folder.join("psd.csv")];
-    let is_folder = !folder.exists() || folder.is_dir();
-    if !is_folder {
+    if !folder.exists() {
+        may_be_written("the surfaces", folder, &asked.files[0], asked.force)?;
+    } else if !folder.is_dir() {
         return Err(failed(format!(
             "cannot write the surfaces to {}: it is a file\nhelp: give the name of a folder as --out",
             shown(folder)
         )));
     }
+    make_folder(folder)?;
     for path in taken.iter().map(|of| &of.out).chain(&others) {
         for source in &asked.files {
             may_be_written("the surfaces", path, source, asked.force)?;
         }
     }
-    make_folder(folder)?;
     for of in taken {
         write_surface(&of.out, &of.imported.header, of.imported.prepared.heights_m.view()).map_err(failed)?;
     }

@@ -40,6 +40,13 @@ impl Shown<'_> {
                 of.examined.estimates.summit_count,
                 of.examined.edge_count,
             ],
+            fitted_1_m: of
+                .imported
+                .prepared
+                .fit
+                .as_ref()
+                .filter(|_| of.imported.height_factor_m.is_some())
+                .map(|fit| fit.band_1_m),
             written: self.written.map(|_| of.out.as_path()),
         }
     }
