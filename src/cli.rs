@@ -17,7 +17,8 @@ pub use reference_limits::constants;
 
 use arguments::{
     CampaignArguments, CompareArguments, CsvArguments, ExportArguments, FindingsArguments, FolderArguments,
-    HowArguments, ImportArguments, JobsArguments, OutputArguments, PsdArguments, ShardsArguments, TalkArguments,
+    HowArguments, ImportArguments, JobsArguments, OutputArguments, PsdArguments, ShardsArguments,
+    TalkArguments,
 };
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;

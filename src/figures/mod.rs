@@ -40,12 +40,12 @@ pub use cycle_loop::Closer;
 pub use drawing::Drawing;
 pub use elements::{ElementsLoop, elements_loop};
 pub use experiment::{Simulated, measured_loops};
-pub use spectra::{Spectra, spectra};
 pub use formats::file;
 pub use markup::described;
 pub use panels::{Panel, compared, panels};
 pub use plot::plot_xy;
 pub use sensitivity::sensitivity;
+pub use spectra::{Spectra, spectra};
 pub use sweep::Tables;
 pub use table::table;
 

@@ -1,9 +1,9 @@
 //! Parameters of a case: surface, material, method and loading path.
 
 use super::{
-    Amplitudes, AttractionKind, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Machine,
-    Material, MeasuredSurface, Method, Normalization, Nucleation, Opening, Probe, Slip, Slips,
-    SpectrumConvention, SpectrumKind, Substrate,
+    Amplitudes, AttractionKind, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Machine, Material,
+    MeasuredSurface, Method, Normalization, Nucleation, Opening, Probe, Slip, Slips, SpectrumConvention,
+    SpectrumKind, Substrate,
 };
 use crate::physics::surface::psd_table::PsdTable;
 use crate::physics::surface::shape::Shape;

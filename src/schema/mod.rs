@@ -37,8 +37,8 @@ pub use realizations::REALIZATIONS;
 pub use render::{
     DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json,
 };
-pub use spectra::{SCAN_SPECTRA, SCANS, SPECTRUM};
 pub use run::{ADHESIONLESS, ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
+pub use spectra::{SCAN_SPECTRA, SCANS, SPECTRUM};
 
 /// Kind of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -284,13 +284,11 @@ pub(super) fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
     let names_files =
         |axis: &&mut Axis| ["surface.file", "surface.files", "surface.spectrum"].contains(&axis.key);
     let axes = spec.sweeps.iter_mut().flat_map(|sweep| &mut sweep.axes).filter(names_files);
-    let swept = axes
-        .flat_map(|axis| &mut axis.values)
-        .flat_map(|value| match value {
-            Value::Text(name) => std::slice::from_mut(name),
-            Value::Texts(names) => names.as_mut_slice(),
-            _ => &mut [],
-        });
+    let swept = axes.flat_map(|axis| &mut axis.values).flat_map(|value| match value {
+        Value::Text(name) => std::slice::from_mut(name),
+        Value::Texts(names) => names.as_mut_slice(),
+        _ => &mut [],
+    });
     let loops = spec.experiment.iter_mut().flat_map(|of| &mut of.loops);
     for name in own.chain(swept).chain(loops) {
         if let Some(found) = moved.get(name) {

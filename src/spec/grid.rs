@@ -19,9 +19,7 @@ use super::shape::{blamed, check_spectrum};
 use super::sweep::{AxisDraft, SweepDraft};
 use super::values::Values;
 use super::walk::{Draft, Origin};
-use crate::model::{
-    CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource,
-};
+use crate::model::{CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource};
 
 use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
 

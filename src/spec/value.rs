@@ -86,7 +86,8 @@ fn texts(
     let elements = array(path, "strings", value, faults)?;
     if elements.is_empty() || elements.len() > count {
         let is_empty = elements.is_empty();
-        let number = if is_empty { "is empty".to_owned() } else { format!("has {} elements", elements.len()) };
+        let number =
+            if is_empty { "is empty".to_owned() } else { format!("has {} elements", elements.len()) };
         let help = if is_empty {
             "name at least one file, or remove the key".to_owned()
         } else {
@@ -104,7 +105,11 @@ fn texts(
             } else {
                 format!("`{path}` names {} twice", faults.written(&element.span()))
             };
-            faults.add(&element.span(), problem, "remove this entry: each scan is one realization".to_owned());
+            faults.add(
+                &element.span(),
+                problem,
+                "remove this entry: each scan is one realization".to_owned(),
+            );
             return None;
         }
         found.push(read);

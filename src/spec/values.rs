@@ -215,7 +215,8 @@ impl Serialize for Values {
         let default = Self::default();
         let says = |key: &Key| (key.get)(self) != (key.get)(&default);
         let keys = |table: &'static str| KEYS.iter().filter(move |key| key.table == table);
-        let is_shown = |key: &&Key| !OTHER_LOADS.contains(&key.name) || says(key);
+        let is_optional = |key: &Key| OTHER_LOADS.contains(&key.name) || key.name == "files";
+        let is_shown = |key: &&Key| !is_optional(key) || says(key);
         let values = |table| {
             let shown = keys(table).filter(is_shown);
             shown.map(|key| (key.name, (key.get)(self))).collect::<BTreeMap<&str, Value>>()

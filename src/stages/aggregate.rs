@@ -2,9 +2,9 @@
 
 use super::cycle::lattice;
 use super::cycle_input::{cycle_input, of_failed};
-use super::extent::{Extent, common, own_file};
 use super::done::{Clock, Outcome};
 use super::error::incomplete;
+use super::extent::{Extent, common, own_file};
 use super::measured_loop::{self, MeasuredLoop, measure_loop};
 use super::runner::{Context, Single, run_single};
 use super::surface::scale;

@@ -18,8 +18,7 @@ pub(super) struct Extent {
 }
 
 /// Columns of the parameters of [`Extent`], and the file.
-const OWN: [&str; 5] =
-    ["surface_file", "length_m", "rms_height_m", "element_points", "attraction_range_m"];
+const OWN: [&str; 5] = ["surface_file", "length_m", "rms_height_m", "element_points", "attraction_range_m"];
 
 impl Extent {
     /// Of a scan that was imported.

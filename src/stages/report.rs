@@ -188,7 +188,8 @@ fn page(
 
 /// Spectra of the scans of `surface.files`, and their panels.
 fn scan_spectra(campaign: &Campaign) -> Result<Option<ScanSpectra>, StageError> {
-    let is_list = |unit: &CaseUnit| unit.case.params.surface.measured().is_some_and(|of| !of.files.is_empty());
+    let is_list =
+        |unit: &CaseUnit| unit.case.params.surface.measured().is_some_and(|of| !of.files.is_empty());
     if !campaign.cases.iter().any(is_list) {
         return Ok(None);
     }

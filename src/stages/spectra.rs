@@ -140,7 +140,8 @@ pub(super) fn samples(campaign: &Campaign) -> Result<Vec<Sample>, StageError> {
         let Some(surface) = case.case.params.surface.measured().filter(|of| !of.files.is_empty()) else {
             continue;
         };
-        let is_known = campaign.cases[..place].iter().any(|of| of.case.params.surface == case.case.params.surface);
+        let is_known =
+            campaign.cases[..place].iter().any(|of| of.case.params.surface == case.case.params.surface);
         if is_known && known.contains(&surface.files.as_slice()) {
             continue;
         }
@@ -228,8 +229,10 @@ pub fn scans_table(samples: &[Sample]) -> Result<Frame, FrameError> {
         .iter()
         .flat_map(|sample| sample.scans.iter().map(Some).chain([None]).map(move |scan| (sample, scan)))
         .collect();
-    let text = |value: fn(&SampleScan) -> String| rows.iter().map(|(_, scan)| scan.map(value)).collect::<Vec<_>>();
-    let number = |value: fn(&SampleScan) -> f64| rows.iter().map(|(_, scan)| scan.map(value)).collect::<Vec<_>>();
+    let text =
+        |value: fn(&SampleScan) -> String| rows.iter().map(|(_, scan)| scan.map(value)).collect::<Vec<_>>();
+    let number =
+        |value: fn(&SampleScan) -> f64| rows.iter().map(|(_, scan)| scan.map(value)).collect::<Vec<_>>();
     let band = |end: usize, of: fn(&SampleScan) -> f64| {
         let one = |(sample, scan): &(&Sample, Option<&SampleScan>)| match scan {
             Some(scan) => Some(of(scan)),

@@ -84,7 +84,9 @@ impl Container {
             Err(error) => return if begins_container(&first) { Err(damaged(error)) } else { Ok(None) },
         };
         if archive.len() > MOST_PARTS {
-            return Err(format!("the archive has {} parts, at most {MOST_PARTS} are read", archive.len()).into());
+            return Err(
+                format!("the archive has {} parts, at most {MOST_PARTS} are read", archive.len()).into()
+            );
         }
         let names: Vec<String> = archive
             .file_names()
@@ -181,8 +183,7 @@ fn contents(archive: &mut ZipArchive<BufReader<File>>, name: &str, most: u64) ->
 
 /// Measurements of the metadata of a container, and notes.
 fn of_index(text: &str, names: &[String]) -> Result<(Vec<Member>, Vec<String>), Cause> {
-    let index: Value =
-        serde_json::from_str(text).map_err(|error| format!("{INDEX} is damaged: {error}"))?;
+    let index: Value = serde_json::from_str(text).map_err(|error| format!("{INDEX} is damaged: {error}"))?;
     let Some(surfaces) = index["surfaces"].as_array() else {
         return Err(format!("{INDEX} has no list of surfaces").into());
     };

@@ -1,9 +1,7 @@
 //! Spectra of several scans: limits of reliability, the S-filter undone, the common spectrum and its roughness.
 
 use hysteron::model::{Filter, HighEnd, LowEnd, SpectrumEnd};
-use hysteron::physics::surface::common_spectrum::{
-    Band, ScanLimits, ScanSpectrum, band_roughness, before_filter, common_spectrum, nodes,
-};
+use hysteron::physics::surface::common_spectrum::{Band, ScanLimits, ScanSpectrum, band_roughness, before_filter, common_spectrum, nodes};
 use hysteron::physics::surface::edges::Edges;
 use hysteron::physics::surface::periodogram::Ring;
 use std::f64::consts::{PI, TAU};
@@ -131,8 +129,7 @@ fn lim_outside_the_bands_there_are_no_rows() {
 fn val_roughness_of_a_power_law_in_closed_form() {
     // C = c q^-4 from a to b: ∫q^n C dq = c (b^(n-3) - a^(n-3))/(n-3), a logarithm at n = 3.
     let (a, b, c) = (1e6, 1e8, 1e-5);
-    let rows: Vec<[f64; 2]> =
-        (0..=20).map(|k| a * 10f64.powf(0.1 * f64::from(k))).map(|q| [q, c * q.powi(-4)]).collect();
+    let rows: Vec<[f64; 2]> = (0..=20).map(|k| a * 10f64.powf(0.1 * f64::from(k))).map(|q| [q, c * q.powi(-4)]).collect();
     let found = band_roughness(&rows).unwrap();
     let over = |n: f64| if n == 3.0 { (b / a).ln() } else { (b.powf(n - 3.0) - a.powf(n - 3.0)) / (n - 3.0) };
     close(found.range_1_m[1], b, 1e-12);

@@ -155,9 +155,7 @@ impl Bytes<'_> {
         for _ in 0..self.list(12, "attributes")? {
             let name = self.name()?;
             let (kind, count) = (self.kind()?, self.count()?);
-            let length = count
-                .checked_mul(kind.map_or(1, |kind| kind.width() as u64))
-                .ok_or(CUT)?;
+            let length = count.checked_mul(kind.map_or(1, |kind| kind.width() as u64)).ok_or(CUT)?;
             if length > LONGEST_ATTRIBUTE {
                 self.skip(length.checked_add(padding(length)).ok_or(CUT)?)?;
                 continue;

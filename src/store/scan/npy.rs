@@ -57,7 +57,10 @@ fn line(source: &mut Source) -> Result<(String, u64), Cause> {
     let length = length.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte));
     let start = fixed.len() as u64 + width + length;
     if start > source.length {
-        return Err(format!("the file ends within the header of {length} bytes\nhelp: copy or download the file again").into());
+        return Err(format!(
+            "the file ends within the header of {length} bytes\nhelp: copy or download the file again"
+        )
+        .into());
     }
     if length > LONGEST_LINE {
         return Err(format!("the header has {length} bytes (limit {LONGEST_LINE})").into());

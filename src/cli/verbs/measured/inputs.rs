@@ -42,7 +42,8 @@ pub(super) fn inputs(
 ) -> Result<(Vec<Input>, Vec<Left>, Vec<String>), Fault> {
     let (mut found, mut left, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     for file in &asked.files {
-        let mut fails = |why: String| left.push(Left { label: shown(file).to_string(), why, is_failure: true });
+        let mut fails =
+            |why: String| left.push(Left { label: shown(file).to_string(), why, is_failure: true });
         match Container::open(file) {
             Err(error) => fails(error.source.to_string()),
             Ok(Some(container)) => {
@@ -59,7 +60,11 @@ pub(super) fn inputs(
                 Err(error) => fails(error.to_string()),
                 Ok(Err(refusal)) => fails(refusal.to_string()),
                 Ok(Ok(Found::Scan(Format::NetCdf3))) if is_line_scan(file) => {
-                    left.push(Left { label: shown(file).to_string(), why: LINE.to_owned(), is_failure: false });
+                    left.push(Left {
+                        label: shown(file).to_string(),
+                        why: LINE.to_owned(),
+                        is_failure: false,
+                    });
                 }
                 Ok(Ok(_)) => found.push(Input {
                     label: shown(file).to_string(),
@@ -96,14 +101,17 @@ fn unpacked(
         return Err(left(why, true));
     }
     // Files of one name in different folders of the archive.
-    let folder = tempfile::tempdir_in(work).map(TempDir::keep).map_err(|error| left(error.to_string(), true))?;
+    let folder =
+        tempfile::tempdir_in(work).map(TempDir::keep).map_err(|error| left(error.to_string(), true))?;
     let path = container.extract(member, &folder).map_err(|error| left(error.source.to_string(), true))?;
     match recognize(&path) {
         Err(error) => return Err(left(error.to_string(), true)),
         Ok(Err(refusal)) => {
             return Err(left(refusal.to_string().replace(&shown(&path).to_string(), &label), true));
         }
-        Ok(Ok(Found::Scan(Format::NetCdf3))) if is_line_scan(&path) => return Err(left(LINE.to_owned(), false)),
+        Ok(Ok(Found::Scan(Format::NetCdf3))) if is_line_scan(&path) => {
+            return Err(left(LINE.to_owned(), false));
+        }
         Ok(Ok(_)) => {}
     }
     let given = params(asked, &path).map_err(|fault| left(fault.text, true))?;
@@ -117,7 +125,8 @@ fn stated(params: &MeasuredSurface, member: &Member) -> Option<MeasuredSurface> 
     let (unit, [x, y]) = (member.unit.as_ref()?, <[f64; 2]>::try_from(member.size.as_slice()).ok()?);
     let factor = metres(unit)?;
     let is_free = params.pixel_m == 0.0 && params.size_m == 0.0;
-    let [size_m, size_y_m] = if is_free { [x * factor, y * factor] } else { [params.size_m, params.size_y_m] };
+    let [size_m, size_y_m] =
+        if is_free { [x * factor, y * factor] } else { [params.size_m, params.size_y_m] };
     let unit = if params.unit.is_empty() { unit.clone() } else { params.unit.clone() };
     Some(MeasuredSurface { size_m, size_y_m, unit, ..params.clone() })
 }

@@ -69,10 +69,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
 }
 
 /// One scan with its asperities. A copy of another one is left out.
-fn read(
-    input: &Input,
-    digests: &mut Vec<(String, String)>,
-) -> Result<Option<(Imported, Examined)>, Left> {
+fn read(input: &Input, digests: &mut Vec<(String, String)>) -> Result<Option<(Imported, Examined)>, Left> {
     let failed = |why: String| Left { label: input.label.clone(), why, is_failure: true };
     let digest = digest_of_file(&input.path).map_err(|error| failed(error.to_string()))?;
     // Datasets of one file are different scans.

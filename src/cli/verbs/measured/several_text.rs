@@ -98,8 +98,7 @@ fn in_words(of: &BandRoughness) -> String {
 
 /// The result as text of at most 80 columns.
 pub(super) fn text(of: &Shown<'_>) -> String {
-    let mut text =
-        format!("{} imported, {} left out\n", counted(of.taken.len(), "scan"), of.left.len());
+    let mut text = format!("{} imported, {} left out\n", counted(of.taken.len(), "scan"), of.left.len());
     let mut line = |label: &str, value: &str| {
         text += &wrapped(&format!("  {label:<14}{value}"), "                ");
     };
@@ -162,9 +161,8 @@ fn files(of: &Shown<'_>, paths: &[PathBuf]) -> String {
     let first = &of.taken[places[0]];
     let files: Vec<String> =
         places.iter().map(|place| crate::spec::quoted(&of.taken[*place].out.to_string_lossy())).collect();
-    let strictest = places.iter().copied().max_by(|a, b| {
-        of.ranges[*a].least_1_m().total_cmp(&of.ranges[*b].least_1_m())
-    });
+    let strictest =
+        places.iter().copied().max_by(|a, b| of.ranges[*a].least_1_m().total_cmp(&of.ranges[*b].least_1_m()));
     let range = &of.ranges[strictest.unwrap_or_default()];
     let mut written: Vec<String> = of.taken.iter().map(|taken| taken.out.display().to_string()).collect();
     written.extend(paths.iter().map(|path| path.display().to_string()));
