@@ -49,8 +49,8 @@ fn panel(tables: &Spectra<'_>, place: usize, case: &str) -> Result<Panel, Figure
     let y = Axis::of_decades("C [m^{4}]", all().map(|point| point.1)).with_headroom(0.25);
     let stem = if place == 0 { NAME.to_owned() } else { format!("{NAME}_{}", place + 1) };
     let caption = format!(
-        "Power spectral density C with ∫ C d²q = h_rms² against wavenumber q = 2π/λ. Each scan: solid between \
-         its limits of reliability (crosses), dotted outside. Common spectrum: mean over the scans that are \
+        "Power spectral density C with ∫ C d²q = h_rms² against wavenumber q = 2π/λ. Each scan: solid \
+         between its limits of reliability (crosses), dotted outside. Common spectrum: mean over the scans that are \
          reliable at q.{}",
         captions::data(&stem)
     );

@@ -67,8 +67,8 @@ pub static SCANS: Table = Table {
     name: "scans",
     version: 1,
     file: "statistics/scans.parquet",
-    doc: "One row per scan, and one for the common spectrum of the case: limits of reliability, and roughness \
-        beside that of the common spectrum. Only for a spec with `surface.files`.",
+    doc: "One row per scan, and one for the common spectrum of the case: limits of reliability, and \
+        roughness beside that of the common spectrum. Only for a spec with `surface.files`.",
     columns: &[
         CASE_ID,
         index("realization", "Number of the scan in `surface.files`, from 0; null for the common spectrum")
@@ -93,12 +93,13 @@ pub static SCANS: Table = Table {
         real("rms_height_m", "m", "Root-mean-square height of the surface; null for the common spectrum")
             .or_null(),
         real("rms_slope", "1", "Root-mean-square gradient of the surface; null likewise").or_null(),
-        real("rms_curvature_1_m", "1/m", "Root-mean-square Laplacian of the surface; null likewise").or_null(),
+        real("rms_curvature_1_m", "1/m", "Root-mean-square Laplacian of the surface; null likewise")
+            .or_null(),
         real(
             "flattening_m",
             "m",
-            "U_el/E* of the surface: elastic energy per area that flattens it, over the reduced modulus; null \
-             likewise",
+            "U_el/E* of the surface: elastic energy per area that flattens it, over the reduced modulus; \
+             null likewise",
         )
         .or_null()
         .from("Persson and Tosatti 2001"),

@@ -77,7 +77,8 @@ pub(super) fn named(
         faults.add(
             span,
             message,
-            "remove the line, or name the file as surface.file, .files or .spectrum exactly as it is written here"
+            "remove the line, or name the file as surface.file, .files or .spectrum exactly as it is written \
+             here"
                 .to_owned(),
         );
     }

@@ -14,7 +14,7 @@ use super::files::named;
 use super::keys::{KEYS, find};
 use super::number::short;
 use super::probe::check_contact;
-use super::scans::check_measured;
+use super::scans::{check_measured, realizations as scan_realizations};
 use super::shape::{blamed, check_spectrum};
 use super::sweep::{AxisDraft, SweepDraft};
 use super::values::Values;
@@ -65,10 +65,9 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     } else {
         BTreeMap::new()
     };
-    let first = read.first().map(|sweep| &sweep.span);
-    let realizations_at = draft.realizations_at.as_ref();
-    let realizations = super::scans::realizations(&cases.list, draft.realizations, realizations_at, faults);
-    bound_tasks(&cases.list, realizations, realizations_at.or(first), faults);
+    let at = draft.realizations_at.as_ref();
+    let realizations = scan_realizations(&cases.list, draft.realizations, at, faults);
+    bound_tasks(&cases.list, realizations, at.or(read.first().map(|sweep| &sweep.span)), faults);
     choices.check(draft.auto_at.as_ref(), faults);
     let mut sweeps: Vec<Sweep> = read.into_iter().map(sweep).collect();
     let auto_methods = choices.settle(&mut base, &mut sweeps);

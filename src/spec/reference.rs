@@ -99,7 +99,7 @@ fn top() -> String {
 - `name`: Name of the run and of its default output directory.
 - `seed`: Seed of all generated surfaces. The same seed gives the same surfaces.
 - `realizations`: Number of surfaces of each case. A table chooses it automatically:
-  `realizations = {{ until_relative_ci = 0.05, of = \"loss\" }}`. A measured surface is one realization.
+  `realizations = {{ until_relative_ci = 0.05, of = \"loss\" }}`. A scan is one realization.
 - `realizations.until_relative_ci`: Realizations are added until the half-width of the 95 %
   confidence interval of the mean is below this fraction of the mean, at every load.
 - `realizations.of`: Quantity whose mean is considered.

@@ -15,8 +15,8 @@ pub(super) fn export(asked: &PsdArguments) -> Result<u8, Fault> {
     let path = dir.join(SPECTRUM.file);
     if !path.is_file() {
         return Err(failed(format!(
-            "cannot export a common spectrum of {}: it has no {}\nhelp: a run of a spec with surface.files has \
-             one; `hysteron import FILE …` writes psd.csv without a run",
+            "cannot export a common spectrum of {}: it has no {}\nhelp: a run of a spec with surface.files \
+             has one; `hysteron import FILE …` writes psd.csv without a run",
             shown(&dir),
             SPECTRUM.file
         )));

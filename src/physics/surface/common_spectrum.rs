@@ -1,7 +1,7 @@
 //! Common spectrum of several scans of one surface, each in the band of wavenumbers where it is reliable.
 //!
-//! Scans of different size and resolution measure different bands of one spectrum. In each band the instrument
-//! sets an end: the side of the scan, the distance of its points, the tip, noise and filters. The common
+//! Scans of different size and resolution measure different bands of one spectrum. The instrument sets the
+//! ends of a band: the side of the scan, the distance of its points, the tip, noise and filters. The common
 //! spectrum at a wavenumber is the mean over the scans whose band contains it (Jacobs, Junge and Pastewka,
 //! Surf. Topogr. 5:013001, 2017; the container averages of SurfaceTopography have the same weights).
 
@@ -63,8 +63,8 @@ impl ScanLimits {
     /// for a scan of few points.
     ///
     /// Lower end: three modes under a window, one mode of a periodic surface; the long cut-off of the
-    /// spectrum if that is shorter. Upper end: the smallest of four points per wavelength, the cut-offs of tip
-    /// and filter, and the end of the spectrum, with a margin for noise and damping.
+    /// spectrum if that is shorter. Upper end: the smallest of four points per wavelength, the cut-offs of
+    /// tip and filter, and the end of the spectrum, with a margin for noise and damping.
     #[must_use]
     pub fn band(&self) -> Band {
         let (modes, side) = match self.edges {
@@ -177,8 +177,8 @@ pub fn nodes(scans: &[ScanSpectrum]) -> Vec<f64> {
 
 /// Common spectrum of scans at ten wavenumbers per decade.
 ///
-/// Each scan that is reliable at a wavenumber has the same weight: `C = Σ C_i/n`, whatever its number of modes.
-/// Wavenumbers without a reliable scan are omitted.
+/// Each scan that is reliable at a wavenumber has the same weight: `C = Σ C_i/n`, whatever its number of
+/// modes. Wavenumbers without a reliable scan are omitted.
 #[must_use]
 pub fn common_spectrum(scans: &[ScanSpectrum]) -> Vec<CommonRow> {
     let row = |wavenumber_1_m: f64| {

@@ -143,7 +143,8 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "margin of the end of a spectrum",
         &BEFORE_END,
         "of its wavenumber",
-        "Common spectrum: a scan contributes up to here, before a Gaussian filter, white noise and a sharp end.",
+        "Common spectrum: a scan contributes up to here, before a Gaussian filter, white noise and a \
+         sharp end.",
         "common_spectrum",
     ),
 ];

@@ -163,7 +163,8 @@ impl Header {
         match self.variables.iter().find(|variable| end(variable).is_none_or(|end| end > length)) {
             None => Ok(()),
             Some(cut) => {
-                Err(format!("the file ends within variable {:?}; it was probably truncated\nhelp: copy or download the file again", cut.name).into())
+                let problem = "it was probably truncated\nhelp: copy or download the file again";
+                Err(format!("the file ends within variable {:?}; {problem}", cut.name).into())
             }
         }
     }

@@ -64,16 +64,16 @@ impl Shown<'_> {
         let others = self.taken.len() - self.of_case().len();
         if others > 0 {
             warnings.push(format!(
-                "{} of {} differ from the first in being periodic or not: the spec leaves them out, since all \
-                 scans of a case are treated alike",
+                "{} of {} differ from the first in being periodic or not: the spec leaves them out, since \
+                 all scans of a case are treated alike",
                 others,
                 counted(self.taken.len(), "scan")
             ));
         }
         warnings.extend(self.sample.gaps_1_m().iter().map(|[low, high]| {
             format!(
-                "gap: no scan is reliable between the wavelengths {:.3e} and {:.3e} m; add a scan of a size \
-                 between",
+                "gap: no scan is reliable between the wavelengths {:.3e} and {:.3e} m; surface.spectrum \
+                 interpolates there, up to a ratio of 4. Add a scan of a size between",
                 TAU / low,
                 TAU / high
             )
@@ -180,6 +180,10 @@ fn files(of: &Shown<'_>, paths: &[PathBuf]) -> String {
     text
 }
 
+fn path_text(path: &PathBuf) -> String {
+    path.display().to_string()
+}
+
 /// The result as JSON.
 pub(super) fn answer(of: &Shown<'_>) -> Value {
     let roughness = |of: Option<BandRoughness>| {
@@ -229,6 +233,6 @@ pub(super) fn answer(of: &Shown<'_>) -> Value {
         "warnings": of.warnings(),
         "common_spectrum": of.sample.common.iter().map(row).collect::<Vec<_>>(),
         "common": roughness(of.sample.roughness()),
-        "files": of.written.map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>()),
+        "files": of.written.map(|paths| paths.iter().map(path_text).collect::<Vec<_>>()),
     })
 }
