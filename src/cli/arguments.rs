@@ -147,7 +147,7 @@ pub(super) struct ExportArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
-    /// Measured surface; several, or a container (zip), are scans of one sample
+    /// Measured surface; several, or a zip container, for one sample
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<PathBuf>,
     /// File to write [default: <name of FILE>.h5]; of several scans a folder
@@ -157,7 +157,7 @@ pub(super) struct ImportArguments {
     #[arg(long, value_name = "NAME")]
     pub(super) dataset: Option<String>,
     /// Pixel size in metres, if it is not stored in the file
-    #[arg(long, value_name = "METRES", conflicts_with = "size", allow_negative_numbers = true)]
+    #[arg(long, value_name = "METRES", conflicts_with = "size", allow_hyphen_values = true)]
     pub(super) pixel_m: Option<f64>,
     /// Size of the scan along x, or x by y: 5um, 5e-6, "5um x 3um"
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true)]
@@ -197,7 +197,7 @@ pub(super) struct ImportArguments {
     )]
     pub(super) fast_axis: Option<String>,
     /// Tip radius in metres; removes wavelengths that it cannot trace
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     pub(super) tip_radius: Option<f64>,
     /// The surface is periodic
     #[arg(long)]
@@ -262,10 +262,10 @@ pub(super) struct LoopArguments {
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub(super) probe_radius: Option<String>,
     /// Reduced modulus in pascals [default: fitted]
-    #[arg(long, value_name = "PASCALS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PASCALS", allow_hyphen_values = true)]
     pub(super) modulus: Option<f64>,
     /// Stiffness of the machine in N/m; subtracts F/k from the displacement
-    #[arg(long, value_name = "N/M", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N/M", allow_hyphen_values = true)]
     pub(super) machine_stiffness: Option<f64>,
 }
 

@@ -50,8 +50,8 @@ fn panel(tables: &Spectra<'_>, place: usize, case: &str) -> Result<Panel, Figure
     let stem = if place == 0 { NAME.to_owned() } else { format!("{NAME}_{}", place + 1) };
     let caption = format!(
         "Power spectral density C with ∫ C d²q = h_rms² against wavenumber q = 2π/λ. Each scan: solid \
-         between its limits of reliability (crosses), dotted outside. Common spectrum: mean over the scans that are \
-         reliable at q.{}",
+         between its limits of reliability (crosses), dotted outside. Common spectrum: mean over \
+         the scans that are reliable at q.{}",
         captions::data(&stem)
     );
     let plot = XyPlot { stem: stem.clone(), key, ..plot(String::new(), x, y, curves, &[]) };

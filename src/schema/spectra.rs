@@ -68,7 +68,7 @@ pub static SCANS: Table = Table {
     version: 1,
     file: "statistics/scans.parquet",
     doc: "One row per scan, and one for the common spectrum of the case: limits of reliability, and \
-        roughness beside that of the common spectrum. Only for a spec with `surface.files`.",
+        roughness with that of the common spectrum in the same band. Only for a spec with `surface.files`.",
     columns: &[
         CASE_ID,
         index("realization", "Number of the scan in `surface.files`, from 0; null for the common spectrum")

@@ -22,7 +22,7 @@ pub struct Planned {
     pub status: &'static str,
     /// Error message of a failed cycle.
     pub failure: Option<String>,
-    /// Parameters of this realization in place of those of its case: the file of one of several scans.
+    /// Parameters of this realization that replace those in its case: the file of one of several scans.
     pub own: Given,
 }
 

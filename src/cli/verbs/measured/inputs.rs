@@ -35,7 +35,7 @@ pub(super) struct Left {
 
 const LINE: &str = "line scan: left out, since a contact needs an area";
 
-/// Scans of all files, those that are left out, and notes on containers.
+/// Scans of all files, scans that are left out, and notes on containers.
 pub(super) fn inputs(
     asked: &ImportArguments,
     work: &TempDir,

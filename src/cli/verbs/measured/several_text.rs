@@ -51,7 +51,7 @@ impl Shown<'_> {
         }
     }
 
-    /// Places of the scans of one case: those that are periodic if the first one is, or those that are not.
+    /// Places of the scans of one case: the periodic ones if the first one is periodic, else the other ones.
     fn of_case(&self) -> Vec<usize> {
         let periodic = |place: &usize| self.taken[*place].imported.header.periodic;
         (0..self.taken.len()).filter(|place| periodic(place) == periodic(&0)).collect()
