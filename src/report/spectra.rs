@@ -20,8 +20,8 @@ const NOTE: &str = "λ: limits of reliability with their causes; outside them a 
     the common spectrum. h_{rms}, rms slope, U_{el}/E*: of the spectrum of the scan between its limits / of \
     the common spectrum between the same limits. U_{el}: elastic energy per area that flattens the \
     roughness. Scans of one surface agree within the scatter of their few long wavelengths. \
-    Data: `scans.parquet`, `scan_spectra.parquet` and `spectrum.parquet` in `statistics`; `hysteron export psd` writes the common \
-    spectrum as a table for `surface.spectrum`.";
+    Data: `scans.parquet`, `scan_spectra.parquet` and `spectrum.parquet` in `statistics`; \
+    `hysteron export psd` writes the common spectrum as a table for `surface.spectrum`.";
 
 /// Heading and columns: of the scan, and of the common spectrum.
 const PAIRS: [(&str, &str); 3] =

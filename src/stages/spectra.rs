@@ -2,7 +2,7 @@
 
 use super::StageError;
 use super::estimates::read_surface_estimates;
-use crate::campaign::{Campaign, Standing};
+use crate::campaign::{Campaign, Standing, SurfaceUnit};
 use crate::model::Choice as _;
 use crate::physics::surface::common_spectrum::{
     BandRoughness, CommonRow, ScanLimits, ScanSpectrum, band_roughness, before_filter, common_spectrum, nodes,
@@ -13,6 +13,7 @@ use crate::schema::{SCAN_SPECTRA, SCANS, SPECTRUM};
 use crate::store::hdf5::{SurfaceHeader, read_surface};
 use crate::store::{Check, Frame, FrameError};
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::fmt::Write as _;
 
 /// A scan of a sample.
@@ -128,6 +129,17 @@ pub fn csv(rows: impl Iterator<Item = [f64; 2]>) -> String {
     text
 }
 
+/// Header and spectrum of a scan, and `U_el/E*` of its surface \[m\].
+type ScanRead = (SurfaceHeader, ScanSpectrum, f64);
+
+fn examined(campaign: &Campaign, unit: &SurfaceUnit) -> Result<ScanRead, StageError> {
+    let (header, heights) = read_surface(&campaign.surface_path(unit))?;
+    let of_rings = if header.periodic { periodogram } else { windowed_periodogram };
+    let spectrum = scan_spectrum(&header, &of_rings(heights.view(), header.length_m)?, true);
+    let estimates = read_surface_estimates(&campaign.estimates_path(unit))?;
+    Ok((header, spectrum, estimates.flattening.energies(1.0).whole_j_m2))
+}
+
 /// The scans of all cases with a list of them, of surfaces that have been imported and examined.
 ///
 /// # Errors
@@ -135,7 +147,7 @@ pub fn csv(rows: impl Iterator<Item = [f64; 2]>) -> String {
 pub(super) fn samples(campaign: &Campaign) -> Result<Vec<Sample>, StageError> {
     let mut found = Vec::new();
     let mut known: Vec<&[String]> = Vec::new();
-    let mut read: HashMap<usize, (SurfaceHeader, ScanSpectrum, f64)> = HashMap::new();
+    let mut read: HashMap<usize, ScanRead> = HashMap::new();
     for (place, case) in campaign.cases.iter().enumerate() {
         let Some(surface) = case.case.params.surface.measured().filter(|of| !of.files.is_empty()) else {
             continue;
@@ -155,14 +167,10 @@ pub(super) fn samples(campaign: &Campaign) -> Result<Vec<Sample>, StageError> {
             {
                 continue;
             }
-            if !read.contains_key(&cycle.surface) {
-                let (header, heights) = read_surface(&campaign.surface_path(unit))?;
-                let of_rings = if header.periodic { periodogram } else { windowed_periodogram };
-                let spectrum = scan_spectrum(&header, &of_rings(heights.view(), header.length_m)?, true);
-                let estimates = read_surface_estimates(&campaign.estimates_path(unit))?;
-                read.insert(cycle.surface, (header, spectrum, estimates.flattening.energies(1.0).whole_j_m2));
-            }
-            let (header, spectrum, flattening_m) = read[&cycle.surface].clone();
+            let (header, spectrum, flattening_m) = match read.entry(cycle.surface) {
+                Entry::Occupied(known) => known.get().clone(),
+                Entry::Vacant(place) => place.insert(examined(campaign, unit)?).clone(),
+            };
             scans.push(SampleScan {
                 realization: cycle.realization as usize,
                 surface_id: unit.id.clone(),
@@ -211,8 +219,11 @@ pub(super) fn scan_spectra_table(samples: &[Sample]) -> Result<Frame, FrameError
         .build()
 }
 
-/// Columns of a roughness by their prefix.
-const ROUGHNESS: [(&str, fn(&BandRoughness) -> f64); 4] = [
+/// A number of a roughness.
+type Measure = fn(&BandRoughness) -> f64;
+
+/// Columns of a roughness without their prefix.
+const ROUGHNESS: [(&str, Measure); 4] = [
     ("rms_height_m", |of| of.moments.rms_height_m()),
     ("rms_slope", |of| of.moments.rms_slope()),
     ("rms_curvature_1_m", |of| of.moments.rms_curvature_1_m()),

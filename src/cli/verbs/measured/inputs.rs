@@ -33,21 +33,20 @@ pub(super) struct Left {
     pub(super) is_failure: bool,
 }
 
+/// Scans to be read, scans that are left out, and notes on containers.
+pub(super) type Inputs = (Vec<Input>, Vec<Left>, Vec<String>);
+
 const LINE: &str = "line scan: left out, since a contact needs an area";
 
 /// Scans of all files, scans that are left out, and notes on containers.
-pub(super) fn inputs(
-    asked: &ImportArguments,
-    work: &TempDir,
-) -> Result<(Vec<Input>, Vec<Left>, Vec<String>), Fault> {
+pub(super) fn inputs(asked: &ImportArguments, work: &TempDir) -> Result<Inputs, Fault> {
     let (mut found, mut left, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     for file in &asked.files {
-        let mut fails =
-            |why: String| left.push(Left { label: shown(file).to_string(), why, is_failure: true });
+        let mut fails = |why: String| left.push(Left { label: shown(file), why, is_failure: true });
         match Container::open(file) {
             Err(error) => fails(error.source.to_string()),
             Ok(Some(container)) => {
-                let archive = shown(file).to_string();
+                let archive = shown(file);
                 notes.extend(container.notes.iter().map(|note| format!("{archive}: {note}")));
                 for member in &container.members {
                     match unpacked(asked, &archive, &container, member, work) {
@@ -60,14 +59,10 @@ pub(super) fn inputs(
                 Err(error) => fails(error.to_string()),
                 Ok(Err(refusal)) => fails(refusal.to_string()),
                 Ok(Ok(Found::Scan(Format::NetCdf3))) if is_line_scan(file) => {
-                    left.push(Left {
-                        label: shown(file).to_string(),
-                        why: LINE.to_owned(),
-                        is_failure: false,
-                    });
+                    left.push(Left { label: shown(file), why: LINE.to_owned(), is_failure: false });
                 }
                 Ok(Ok(_)) => found.push(Input {
-                    label: shown(file).to_string(),
+                    label: shown(file),
                     stem: file.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
                     path: file.clone(),
                     params: params(asked, file)?,
@@ -107,7 +102,7 @@ fn unpacked(
     match recognize(&path) {
         Err(error) => return Err(left(error.to_string(), true)),
         Ok(Err(refusal)) => {
-            return Err(left(refusal.to_string().replace(&shown(&path).to_string(), &label), true));
+            return Err(left(refusal.to_string().replace(&shown(&path), &label), true));
         }
         Ok(Ok(Found::Scan(Format::NetCdf3))) if is_line_scan(&path) => {
             return Err(left(LINE.to_owned(), false));

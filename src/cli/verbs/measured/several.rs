@@ -101,12 +101,12 @@ fn measured(input: &Input, digest: &str) -> Result<Imported, StageError> {
 /// The reason of an error without the path of a file that was unpacked.
 fn reason(error: &StageError, path: &Path, label: &str) -> String {
     let why = if let StageError::Measured { why, .. } = error { why.clone() } else { error.to_string() };
-    why.replace(&shown(path).to_string(), label)
+    why.replace(&shown(path), label)
 }
 
 /// The error of files of which none was read.
 fn nothing(files: &[PathBuf], left: &[Left]) -> Fault {
-    let names: Vec<String> = files.iter().map(|file| shown(file).to_string()).collect();
+    let names: Vec<String> = files.iter().map(|file| shown(file)).collect();
     let reasons: String = left.iter().map(|of| format!("\n  {}: {}", of.label, of.why)).collect();
     failed(format!(
         "cannot import {}: no scan was read{reasons}\nhelp: import one of the files alone for its options",

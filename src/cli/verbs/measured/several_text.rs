@@ -180,7 +180,7 @@ fn files(of: &Shown<'_>, paths: &[PathBuf]) -> String {
     text
 }
 
-fn path_text(path: &PathBuf) -> String {
+fn path_text(path: &Path) -> String {
     path.display().to_string()
 }
 
@@ -233,6 +233,6 @@ pub(super) fn answer(of: &Shown<'_>) -> Value {
         "warnings": of.warnings(),
         "common_spectrum": of.sample.common.iter().map(row).collect::<Vec<_>>(),
         "common": roughness(of.sample.roughness()),
-        "files": of.written.map(|paths| paths.iter().map(path_text).collect::<Vec<_>>()),
+        "files": of.written.map(|paths| paths.iter().map(|path| path_text(path)).collect::<Vec<_>>()),
     })
 }
