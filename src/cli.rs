@@ -17,7 +17,8 @@ pub use reference_limits::constants;
 
 use arguments::{
     CampaignArguments, CompareArguments, CsvArguments, ExportArguments, FindingsArguments, FolderArguments,
-    HowArguments, ImportArguments, JobsArguments, OutputArguments, ShardsArguments, TalkArguments,
+    HowArguments, ImportArguments, JobsArguments, OutputArguments, PsdArguments, ShardsArguments,
+    TalkArguments,
 };
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -228,6 +229,8 @@ enum Verb {
 enum ExportVerb {
     /// Tables of a run or comparison as CSV; with --cycles, of cycles too
     Csv(CsvArguments),
+    /// Common spectrum of the scans of a run, for surface.spectrum
+    Psd(PsdArguments),
     /// A surface as NetCDF-3, for SurfaceTopography
     Netcdf(ExportArguments),
     /// A surface as HDF5 in the layout of Tamaas' H5Dumper

@@ -182,7 +182,7 @@ const JPK_VIDEO: Foreign = Foreign { name: "h5-jpk (Bruker JPK video)", way: Way
 /// Surfaces of contact.engineering or of SurfaceTopography in a zip archive.
 const CONTAINER: Foreign = said(
     "a container of contact.engineering (zip archive with several measurements)",
-    "unpack it (unzip FILE) and import one of the NetCDF files (*.nc) or data files in it",
+    "`hysteron import FILE` writes its scans as surfaces, and prints a spec with surface.files",
 );
 
 /// Extensions of formats that are not read and have no first bytes of their own, or share them with others.

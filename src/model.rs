@@ -2,12 +2,14 @@
 
 mod case;
 mod experiment;
+mod measured;
 
 pub use crate::physics::elements::probe::SPHERE_SHARE;
 pub use crate::physics::model::*;
 pub use crate::physics::theory::regime::{BRIDGED, FLATTENED, LARGE_AREA, Regime, SEPARATE};
 pub use case::{
-    AsperityOptions, Attraction, CaseParams, ElementOptions, GeneratedSurface, LoadingPath, MeasuredSurface,
-    MethodOptions, SurfaceSource, TabulatedSpectrum,
+    AsperityOptions, Attraction, CaseParams, ElementOptions, GeneratedSurface, LoadingPath, MethodOptions,
+    SurfaceSource, TabulatedSpectrum,
 };
 pub use experiment::{Experiment, LoopOptions};
+pub use measured::MeasuredSurface;

@@ -303,8 +303,13 @@ pub(super) fn of_surface(spec: &Spec, params: &SurfaceSource) -> Value {
     } = &**surface;
     let MeasuredSurface { transpose, missing, detrend, filter, points_per_shortest_wavelength, .. } =
         &**surface;
+    let blake3 = if surface.files.is_empty() {
+        json!(spec.files.get(file))
+    } else {
+        json!(surface.files.iter().map(|file| spec.files.get(file)).collect::<Vec<_>>())
+    };
     let mut reads = json!({
-        "reading_version": READING_VERSION, "blake3": spec.files.get(file), "dataset": dataset,
+        "reading_version": READING_VERSION, "blake3": blake3, "dataset": dataset,
         "periodic": periodic, "pixel_m": pixel_m, "size_m": size_m, "size_y_m": size_y_m, "unit": unit,
         "skip_lines": skip_lines, "width": width, "transpose": transpose, "missing": missing,
         "detrend": detrend, "filter": filter,

@@ -88,7 +88,7 @@ pub struct SurfaceUnit {
     pub asperities_key: String,
     /// Parameters of the surface.
     pub params: SurfaceSource,
-    /// Number of the realisation.
+    /// Number of the realisation, which is 0 of a scan: it is the same surface in each case.
     pub realization: u32,
 }
 
@@ -103,6 +103,11 @@ pub struct CycleUnit {
     pub case: usize,
     /// Which surface, by place in [`Campaign::surfaces`].
     pub surface: usize,
+    /// Number of the realization in its case.
+    pub realization: u32,
+    /// Case in the tables of the cycle: without the errata that only analytical estimates read, and of
+    /// several scans that of this scan alone.
+    pub table_case_id: String,
 }
 
 /// A case with its identity.
@@ -110,9 +115,6 @@ pub struct CycleUnit {
 pub struct CaseUnit {
     /// Readable first, then a hash of all its parameters.
     pub id: String,
-    /// Id in the tables of its cycles: that of the case without the errata that only analytical estimates
-    /// read.
-    pub cycle_case_id: String,
     /// The case.
     pub case: Case,
 }
@@ -179,8 +181,8 @@ impl Campaign {
     /// All tasks of a spec. With a target precision: the tasks of the initial realizations.
     #[must_use]
     pub fn new(spec: Spec, dir: PathBuf) -> Self {
-        // A measured surface is one surface.
-        let count = |case: &Case| case.params.surface.measured().map_or(spec.realizations.least(), |_| 1);
+        // Each scan of a measured surface is one surface.
+        let count = |case: &Case| case.params.surface.scan_count().unwrap_or(spec.realizations.least());
         let counts = spec.cases.iter().map(count).collect();
         Self::with_counts(spec, dir, counts)
     }
@@ -192,30 +194,39 @@ impl Campaign {
         let mut campaign =
             Self { dir, cases: Vec::new(), surfaces: Vec::new(), cycles: Vec::new(), labels, counts, spec };
         let hashed = Hashed::all(&campaign.spec, &campaign.counts);
-        // Of each kind of surface, the places of its realizations.
-        let mut places: Vec<Vec<usize>> = vec![Vec::new(); hashed.surfaces.len()];
+        // Of each key of a surface, its place: cases share surfaces, and scans.
+        let mut places: HashMap<&str, usize> = HashMap::new();
         // Files of different names with the same content have the same cycles: one key, one id.
-        let mut ids: HashMap<String, String> = HashMap::new();
-        for (number, (case, of)) in campaign.spec.cases.iter().zip(hashed.cases).enumerate() {
-            let [id, cycle_case_id] =
-                [&of.whole, &of.in_cycle].map(|key| format!("{}-{}", of.name, short(key)));
-            campaign.cases.push(CaseUnit { id, cycle_case_id, case: case.clone() });
-            let (known, surfaces) = (&mut places[of.surface], &hashed.surfaces[of.surface]);
-            for (realization, cycle) in of.cycles.into_iter().enumerate() {
-                if known.len() == realization {
-                    let (key, asperities_key) = surfaces[realization].clone();
-                    known.push(campaign.surfaces.len());
+        let mut ids: HashMap<&str, String> = HashMap::new();
+        for (number, (case, of)) in campaign.spec.cases.iter().zip(&hashed.cases).enumerate() {
+            let id = format!("{}-{}", of.name, short(&of.whole));
+            campaign.cases.push(CaseUnit { id, case: case.clone() });
+            for (place, cycle) in of.cycles.iter().enumerate() {
+                let surface = &hashed.surfaces[of.surface][place];
+                let params = &case.params.surface;
+                let (realization, (name, in_cycle)) =
+                    (place as u32, &of.in_cycles[place.min(of.in_cycles.len() - 1)]);
+                let number_of_surface = if params.measured().is_some() { 0 } else { realization };
+                let of_surface = *places.entry(surface.key.as_str()).or_insert_with(|| {
                     campaign.surfaces.push(SurfaceUnit {
-                        id: format!("{}_r{realization:02}-{}", of.name, short(&key)),
-                        asperities_key,
-                        key,
-                        params: case.params.surface.clone(),
-                        realization: realization as u32,
+                        id: format!("{name}_r{number_of_surface:02}-{}", short(&surface.key)),
+                        asperities_key: surface.asperities_key.clone(),
+                        key: surface.key.clone(),
+                        params: params.of_realization(realization),
+                        realization: number_of_surface,
                     });
-                }
-                let id = || format!("{}_r{realization:02}-{}", of.name, short(&cycle));
-                let id = ids.entry(cycle.clone()).or_insert_with(id).clone();
-                campaign.cycles.push(CycleUnit { id, key: cycle, case: number, surface: known[realization] });
+                    campaign.surfaces.len() - 1
+                });
+                let id = || format!("{name}_r{number_of_surface:02}-{}", short(cycle));
+                let id = ids.entry(cycle).or_insert_with(id).clone();
+                campaign.cycles.push(CycleUnit {
+                    id,
+                    key: cycle.clone(),
+                    case: number,
+                    surface: of_surface,
+                    realization,
+                    table_case_id: format!("{name}-{}", short(in_cycle)),
+                });
             }
         }
         let surfaces = campaign.surfaces.iter_mut().map(|unit| (&mut unit.id, unit.key.as_str())).collect();

@@ -17,6 +17,9 @@ use std::path::{Path, PathBuf};
 /// in it.
 const PLACES: &str = "files";
 
+/// Scans of a case whose names its label lists.
+const MOST_NAMED: usize = 3;
+
 /// Labels of the files of a spec: the name, with as many of its folders as distinguish it from the other
 /// files.
 pub(super) fn labels(spec: &Spec) -> BTreeMap<String, String> {
@@ -41,11 +44,18 @@ pub(super) fn labels(spec: &Spec) -> BTreeMap<String, String> {
 }
 
 impl Campaign {
-    /// Label in tables of the file of a measured surface or of a tabulated spectrum; other surfaces have
-    /// none.
+    /// Label in tables of the files of a measured surface or of a tabulated spectrum; other surfaces have
+    /// none. Of many scans the first, the last and their number are named.
     #[must_use]
     pub fn label_of(&self, surface: &SurfaceSource) -> Option<String> {
-        surface.file().map(|file| self.file_label(file))
+        let labels: Vec<String> = surface.files().iter().map(|file| self.file_label(file)).collect();
+        match &labels[..] {
+            [] => None,
+            [first, _, _, .., last] if labels.len() > MOST_NAMED => {
+                Some(format!("{first} … {last} ({} scans)", labels.len()))
+            }
+            few => Some(few.join(", ")),
+        }
     }
 
     /// Label of a file of a measured surface or loop in tables.
@@ -57,7 +67,7 @@ impl Campaign {
     /// A message with the label of a file in place of its path: the part that begins like an absolute path
     /// and ends with the name of the file.
     pub(super) fn with_label(&self, message: &str, surface: &SurfaceSource) -> String {
-        let Some(file) = surface.file() else { return message.to_owned() };
+        let [file] = surface.files() else { return message.to_owned() };
         let Some(name) = Path::new(file).file_name().map(|name| visible(&name.to_string_lossy())) else {
             return message.to_owned();
         };

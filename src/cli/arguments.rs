@@ -119,6 +119,21 @@ pub(super) struct CsvArguments {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct PsdArguments {
+    /// Output folder of a run with surface.files
+    pub(super) dir: PathBuf,
+    /// Case with the scans, where a run has several
+    #[arg(long, value_name = "ID")]
+    pub(super) case: Option<String>,
+    /// File to write (CSV)
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: PathBuf,
+    /// Overwrite an existing file
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct ExportArguments {
     /// Surface: surfaces/<id>.h5 of a run, or an output of `import`
     pub(super) surface: PathBuf,
@@ -132,19 +147,20 @@ pub(super) struct ExportArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
-    /// Measured surface
-    pub(super) file: PathBuf,
-    /// File to write [default: <name of FILE>.h5]
+    /// Measured surface; several, or a zip container, for one sample
+    #[arg(required = true, value_name = "FILE")]
+    pub(super) files: Vec<PathBuf>,
+    /// File to write [default: <name of FILE>.h5]; of several scans a folder
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
     /// Dataset (HDF5) or variable (NetCDF) of a file with several
     #[arg(long, value_name = "NAME")]
     pub(super) dataset: Option<String>,
     /// Pixel size in metres, if it is not stored in the file
-    #[arg(long, value_name = "METRES", conflicts_with = "size")]
+    #[arg(long, value_name = "METRES", conflicts_with = "size", allow_hyphen_values = true)]
     pub(super) pixel_m: Option<f64>,
     /// Size of the scan along x, or x by y: 5um, 5e-6, "5um x 3um"
-    #[arg(long, value_name = "SIZE")]
+    #[arg(long, value_name = "SIZE", allow_hyphen_values = true)]
     pub(super) size: Option<String>,
     /// Unit of the heights (e.g. nm), if it is not stored in the file
     #[arg(long)]
@@ -181,7 +197,7 @@ pub(super) struct ImportArguments {
     )]
     pub(super) fast_axis: Option<String>,
     /// Tip radius in metres; removes wavelengths that it cannot trace
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     pub(super) tip_radius: Option<f64>,
     /// The surface is periodic
     #[arg(long)]
@@ -243,13 +259,13 @@ pub(super) struct LoopArguments {
     )]
     pub(super) baseline: Option<String>,
     /// Radius of the spherical probe: 20um, or 2e-5 in metres
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub(super) probe_radius: Option<String>,
     /// Reduced modulus in pascals [default: fitted]
-    #[arg(long, value_name = "PASCALS")]
+    #[arg(long, value_name = "PASCALS", allow_hyphen_values = true)]
     pub(super) modulus: Option<f64>,
     /// Stiffness of the machine in N/m; subtracts F/k from the displacement
-    #[arg(long, value_name = "N/M")]
+    #[arg(long, value_name = "N/M", allow_hyphen_values = true)]
     pub(super) machine_stiffness: Option<f64>,
 }
 

@@ -1,9 +1,9 @@
 //! Parameters of a case: surface, material, method and loading path.
 
 use super::{
-    Amplitudes, AttractionKind, Boundary, Coalescence, Detrend, FastAxis, Filter, Interaction, JumpIn,
-    KeptContacts, Machine, Material, Method, Missing, Normalization, Nucleation, Opening, Probe, Slip, Slips,
-    SpectrumConvention, SpectrumKind, Substrate,
+    Amplitudes, AttractionKind, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Machine, Material,
+    MeasuredSurface, Method, Normalization, Nucleation, Opening, Probe, Slip, Slips, SpectrumConvention,
+    SpectrumKind, Substrate,
 };
 use crate::physics::surface::psd_table::PsdTable;
 use crate::physics::surface::shape::Shape;
@@ -102,47 +102,6 @@ fn is_one(value: &f64) -> bool {
 
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
-}
-
-/// A measured surface and its treatment.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeasuredSurface {
-    /// Its file.
-    pub file: String,
-    /// Which of the file's fields it is; empty for the only one.
-    pub dataset: String,
-    /// True if it continues periodically.
-    pub periodic: bool,
-    /// Distance of its points \[m\], if the file does not state it; else 0.
-    pub pixel_m: f64,
-    /// Size of the scan along x \[m\], where the file does not state it; else 0.
-    pub size_m: f64,
-    /// Size of the scan along y \[m\]; 0 for square pixels.
-    pub size_y_m: f64,
-    /// Unit of its heights, if the file does not state it.
-    pub unit: String,
-    /// Lines of a text that are not read.
-    pub skip_lines: u32,
-    /// Points of a scan line of a text whose lines are none; else 0.
-    pub width: u32,
-    /// True to exchange x and y.
-    pub transpose: bool,
-    /// Treatment of missing points.
-    pub missing: Missing,
-    /// Shape that is removed from its heights by least squares; the mean alone if it is periodic.
-    pub detrend: Detrend,
-    /// Low-pass filter.
-    pub filter: Filter,
-    /// Cut-off wavelength of the filter in pixels.
-    pub points_per_shortest_wavelength: u32,
-    /// True if outliers are replaced.
-    pub outliers: bool,
-    /// True if the offsets of scan lines are removed.
-    pub align_rows: bool,
-    /// Direction of the scan lines.
-    pub fast_axis: FastAxis,
-    /// Radius of the tip that measured it \[m\]; 0 if it is unknown or sharp.
-    pub tip_radius_m: f64,
 }
 
 /// A method with its options.
@@ -262,12 +221,30 @@ impl SurfaceSource {
         if let Self::Measured(surface) = self { Some(surface) } else { None }
     }
 
-    /// File of the measured surface, or of the tabulated spectrum of a generated one.
+    /// Files of the measured surface, or the file of the tabulated spectrum of a generated one.
     #[must_use]
-    pub fn file(&self) -> Option<&str> {
+    pub fn files(&self) -> &[String] {
         match self {
-            Self::Measured(surface) => Some(&surface.file),
-            Self::Generated(surface) => Some(surface.tabulated.file.as_str()).filter(|file| !file.is_empty()),
+            Self::Measured(surface) => surface.names(),
+            Self::Generated(surface) if surface.is_tabulated() => {
+                std::slice::from_ref(&surface.tabulated.file)
+            }
+            Self::Generated(_) => &[],
+        }
+    }
+
+    /// Number of realizations that the surface itself states: its scans; nothing for a generated one.
+    #[must_use]
+    pub fn scan_count(&self) -> Option<u32> {
+        self.measured().map(|surface| surface.names().len() as u32)
+    }
+
+    /// The surface of one realization: of several scans, that one.
+    #[must_use]
+    pub fn of_realization(&self, realization: u32) -> Self {
+        match self {
+            Self::Measured(surface) => Self::Measured(Box::new(surface.scan(realization))),
+            Self::Generated(_) => self.clone(),
         }
     }
 
@@ -424,31 +401,6 @@ impl Default for TabulatedSpectrum {
             series: String::new(),
             table: None,
             reading: String::new(),
-        }
-    }
-}
-
-impl Default for MeasuredSurface {
-    fn default() -> Self {
-        Self {
-            file: String::new(),
-            dataset: String::new(),
-            periodic: false,
-            pixel_m: 0.0,
-            size_m: 0.0,
-            size_y_m: 0.0,
-            unit: String::new(),
-            skip_lines: 0,
-            width: 0,
-            transpose: false,
-            missing: Missing::Refuse,
-            detrend: Detrend::Plane,
-            filter: Filter::Gaussian,
-            points_per_shortest_wavelength: 8,
-            outliers: false,
-            align_rows: false,
-            fast_axis: FastAxis::Auto,
-            tip_radius_m: 0.0,
         }
     }
 }

@@ -264,6 +264,34 @@ choice! {
     }
 }
 choice! {
+    /// Cause of the lower end of the band in which the spectrum of a scan is reliable.
+    LowEnd {
+        /// The longest wavelength of a periodic surface.
+        Side = "side",
+        /// Three modes of the side: levelling and the window change lower ones.
+        Window = "window",
+        /// The long cut-off of the spectrum.
+        LongCut = "long_cut",
+    }
+}
+choice! {
+    /// Cause of the upper end of the band in which the spectrum of a scan is reliable.
+    HighEnd {
+        /// Four points per wavelength.
+        Grid = "grid",
+        /// The reliability cut-off of the tip.
+        Tip = "tip",
+        /// The cut-off of the S-filter that the heights have passed.
+        Filter = "filter",
+        /// The density falls below the self-affine spectrum.
+        Empty = "empty",
+        /// A Gaussian filter of the instrument damps the spectrum.
+        GaussianFilter = "gaussian_filter",
+        /// White noise adds to the spectrum.
+        WhiteNoise = "white_noise",
+    }
+}
+choice! {
     /// Direction of the scan lines of a measured surface.
     FastAxis {
         /// The direction with the larger offsets between lines, else rows.

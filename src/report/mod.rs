@@ -15,6 +15,7 @@ mod numbers;
 mod results;
 mod scans;
 mod single_cycle;
+mod spectra;
 mod theories;
 mod validity;
 
@@ -24,6 +25,7 @@ pub use failures::Failure;
 pub use live::{LiveLoop, LiveRun, LiveStage, live_page};
 pub use methods::MethodFigures;
 pub use single_cycle::SingleCycle;
+pub use spectra::ScanSpectra;
 
 use crate::figures::{Drawing, Panel};
 use crate::stats::StatsError;
@@ -68,6 +70,8 @@ pub struct Report<'a> {
     pub method_figures: &'a MethodFigures,
     /// Files of the measured surfaces.
     pub scans: &'a [SurfaceHeader],
+    /// Spectra of the scans of `surface.files`, if the spec has any.
+    pub scan_spectra: Option<&'a ScanSpectra>,
     /// Measured loops, if the spec has any.
     pub measured_loops: Option<&'a MeasuredLoops>,
     /// Names of the sweeps, in order.
@@ -105,6 +109,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         }
         (methods::side_by_side(&cases, report.methods, report.method_figures, &numbers)?)
         (scans::scans(report.scans))
+        @if let Some(spectra) = report.scan_spectra { (spectra::section(spectra, &numbers)?) }
         @if let Some(loops) = report.measured_loops { (experiment::section(loops, &cases, &numbers)?) }
         @if has_results {
             @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }

@@ -17,6 +17,7 @@ mod parameters;
 mod realizations;
 mod render;
 mod run;
+mod spectra;
 
 pub use crate::physics::{EventCounts, EventGroup, EventKind, SpotStatus};
 pub use avalanches::AVALANCHES;
@@ -37,6 +38,7 @@ pub use render::{
     DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json,
 };
 pub use run::{ADHESIONLESS, ASPERITIES, CONTACTS, EVENTS, MERGED, STEPS, TURNING};
+pub use spectra::{SCAN_SPECTRA, SCANS, SPECTRUM};
 
 /// Kind of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,6 +141,9 @@ pub static TABLES: &[&Table] = &[
     &COMPARISON,
     &MEASURED_LOOPS,
     &MEASURED_STEPS,
+    &SCANS,
+    &SCAN_SPECTRA,
+    &SPECTRUM,
 ];
 
 impl Column {

@@ -164,7 +164,7 @@ pub(super) fn chosen(
             }
             Err((problem, help)) => {
                 let at = text.find("\"auto\"").map_or(0..0, |at| at..at + 6);
-                let file = unit.params.surface.measured().map_or("", |surface| &surface.file);
+                let file = unit.params.surface.files().join("\", \"");
                 faults.add(
                     &at,
                     format!("`model.method` = \"auto\" cannot be chosen from the scan \"{file}\": {problem}"),

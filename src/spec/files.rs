@@ -70,14 +70,15 @@ pub(super) fn named(
     faults: &mut Faults<'_>,
 ) -> BTreeMap<String, String> {
     let loops = experiment.into_iter().flat_map(|of| &of.loops).map(String::as_str);
-    let of_cases = cases.iter().filter_map(|case| case.params.surface.file());
+    let of_cases = cases.iter().flat_map(|case| case.params.surface.files()).map(String::as_str);
     let wanted: HashSet<&str> = of_cases.chain(loops).collect();
     for (name, (_, span)) in files.iter().filter(|(name, _)| !wanted.contains(name.as_str())) {
         let message = format!("[files] has a checksum of \"{}\", which is not used by any case", shown(name));
         faults.add(
             span,
             message,
-            "remove the line, or name the file as surface.file or .spectrum exactly as it is written here"
+            "remove the line, or name the file as surface.file, .files or .spectrum exactly as it is written \
+             here"
                 .to_owned(),
         );
     }
@@ -89,9 +90,10 @@ type Source<'a> = (&'a str, Option<&'a str>);
 
 /// Files of some cases.
 fn sources(cases: &[Case]) -> impl Iterator<Item = Source<'_>> {
-    cases.iter().filter_map(|case| {
+    cases.iter().flat_map(|case| {
         let surface = &case.params.surface;
-        Some((surface.file()?, surface.measured().map(|scan| scan.dataset.as_str())))
+        let dataset = surface.measured().map(|scan| scan.dataset.as_str());
+        surface.files().iter().map(move |file| (file.as_str(), dataset))
     })
 }
 
@@ -146,6 +148,7 @@ pub(super) fn digested(mut spec: Spec, text: &str, file: &str, folder: &Path) ->
         }
     }
     tabulate(&mut spec, &moved, text, &mut faults);
+    refuse_copies(&spec, &moved, text, &mut faults);
     loops(&mut spec, &known, folder, (text, &mut faults), &mut moved);
     rename(&mut spec, &moved);
     join_copies(&mut spec);
@@ -227,14 +230,31 @@ fn loops(
     }
 }
 
+/// Refuses two files of one content among the scans of a case: a copy is no further realization.
+fn refuse_copies(spec: &Spec, moved: &BTreeMap<String, String>, text: &str, faults: &mut Faults<'_>) {
+    let mut told = HashSet::new();
+    for case in &spec.cases {
+        let mut known: HashMap<&String, &String> = HashMap::new();
+        let names = case.params.surface.measured().map_or(&[][..], |surface| &surface.files);
+        for name in names {
+            let Some(digest) = spec.files.get(moved.get(name).unwrap_or(name)) else { continue };
+            let first = *known.entry(digest).or_insert(name);
+            if first != name && told.insert(name) {
+                let message = format!("\"{name}\" has the same content as \"{first}\"");
+                let help = "remove one of them from `surface.files`: each scan is one realization".to_owned();
+                blame(name, text, message, help, faults);
+            }
+        }
+    }
+}
+
 /// Joins cases that differ only in the folder of a file with the same name and content.
 fn join_copies(spec: &mut Spec) {
     let mut names: HashMap<(String, Option<OsString>), String> = HashMap::new();
     let (mut cases, mut moved) = (Cases::default(), Vec::new());
     for Case { sweeps, mut params } in std::mem::take(&mut spec.cases) {
-        if let Some(file) = file_of(&mut params.surface)
-            && let Some(digest) = spec.files.get(file)
-        {
+        for file in files_of(&mut params.surface) {
+            let Some(digest) = spec.files.get(file) else { continue };
             let name = Path::new(&file).file_name().map(ToOwned::to_owned);
             let first = names.entry((digest.clone(), name)).or_insert_with(|| file.clone());
             file.clone_from(first);
@@ -245,25 +265,31 @@ fn join_copies(spec: &mut Spec) {
     spec.auto_cases.iter_mut().for_each(|place| *place = moved.get(*place).copied().unwrap_or(*place));
 }
 
-/// The name of the file of a surface, if it has one.
-fn file_of(surface: &mut SurfaceSource) -> Option<&mut String> {
+/// The names of the files of a surface.
+fn files_of(surface: &mut SurfaceSource) -> &mut [String] {
     match surface {
-        SurfaceSource::Measured(surface) => Some(&mut surface.file),
-        SurfaceSource::Generated(surface) => {
-            Some(&mut surface.tabulated.file).filter(|file| !file.is_empty())
+        SurfaceSource::Measured(surface) => surface.names_mut(),
+        SurfaceSource::Generated(surface) if surface.is_tabulated() => {
+            std::slice::from_mut(&mut surface.tabulated.file)
         }
+        SurfaceSource::Generated(_) => &mut [],
     }
 }
 
 /// Gives files other names in all places of a spec.
 pub(super) fn rename(spec: &mut Spec, moved: &BTreeMap<String, String>) {
-    let own = spec.cases.iter_mut().filter_map(|case| file_of(&mut case.params.surface));
-    let own = own.chain([&mut spec.base.measured.file, &mut spec.base.generated.tabulated.file]);
-    let names_files = |axis: &&mut Axis| ["surface.file", "surface.spectrum"].contains(&axis.key);
+    let own = spec.cases.iter_mut().flat_map(|case| files_of(&mut case.params.surface));
+    let base = &mut spec.base;
+    let own = own.chain([&mut base.measured.file, &mut base.generated.tabulated.file]);
+    let own = own.chain(&mut base.measured.files);
+    let names_files =
+        |axis: &&mut Axis| ["surface.file", "surface.files", "surface.spectrum"].contains(&axis.key);
     let axes = spec.sweeps.iter_mut().flat_map(|sweep| &mut sweep.axes).filter(names_files);
-    let swept = axes
-        .flat_map(|axis| &mut axis.values)
-        .filter_map(|value| if let Value::Text(name) = value { Some(name) } else { None });
+    let swept = axes.flat_map(|axis| &mut axis.values).flat_map(|value| match value {
+        Value::Text(name) => std::slice::from_mut(name),
+        Value::Texts(names) => names.as_mut_slice(),
+        _ => &mut [],
+    });
     let loops = spec.experiment.iter_mut().flat_map(|of| &mut of.loops);
     for name in own.chain(swept).chain(loops) {
         if let Some(found) = moved.get(name) {

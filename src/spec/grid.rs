@@ -11,16 +11,15 @@ use super::cases::Cases;
 use super::elements::check_elements;
 use super::fault::Faults;
 use super::files::named;
-use super::keys::{GENERATED, KEYS, find};
+use super::keys::{KEYS, find};
 use super::number::short;
 use super::probe::check_contact;
+use super::scans::{check_measured, realizations as scan_realizations};
 use super::shape::{blamed, check_spectrum};
 use super::sweep::{AxisDraft, SweepDraft};
 use super::values::Values;
-use super::walk::{Draft, Origin, written};
-use crate::model::{
-    Boundary, CaseParams, Choice, Detrend, FarField, GeneratedSurface, MeasuredSurface, Method, SurfaceSource,
-};
+use super::walk::{Draft, Origin};
+use crate::model::{CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource};
 
 use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
 
@@ -66,8 +65,9 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     } else {
         BTreeMap::new()
     };
-    let first = read.first().map(|sweep| &sweep.span);
-    bound_tasks(&cases.list, draft.realizations, draft.realizations_at.as_ref().or(first), faults);
+    let at = draft.realizations_at.as_ref();
+    let realizations = scan_realizations(&cases.list, draft.realizations, at, faults);
+    bound_tasks(&cases.list, realizations, at.or(read.first().map(|sweep| &sweep.span)), faults);
     choices.check(draft.auto_at.as_ref(), faults);
     let mut sweeps: Vec<Sweep> = read.into_iter().map(sweep).collect();
     let auto_methods = choices.settle(&mut base, &mut sweeps);
@@ -76,7 +76,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     Some(Spec {
         name: draft.name?,
         seed: draft.seed,
-        realizations: draft.realizations,
+        realizations,
         figures: draft.figures,
         experiment: draft.experiment,
         cases: cases.list,
@@ -120,7 +120,7 @@ fn bound_tasks(
     let mut surfaces: HashSet<String> = HashSet::new();
     let mut tasks = 0;
     for Case { params: CaseParams { surface, .. }, .. } in cases {
-        let count = surface.measured().map_or(u64::from(most), |_| 1);
+        let count = u64::from(surface.scan_count().unwrap_or(most));
         tasks += count * if surfaces.insert(format!("{surface:?}")) { 3 } else { 1 };
     }
     if tasks > MAX_TASKS {
@@ -169,55 +169,8 @@ fn complete(values: &mut Values, origins: &[Origin]) {
     }
 }
 
-/// Origins of the values of a case, and the keys of its sweep.
-type Written<'a> = (&'a [Origin], &'a [usize]);
-
-/// Checks the requirements of a measured surface on the other values of its case.
-fn check_measured(
-    case: &CaseParams,
-    surface: &MeasuredSurface,
-    (origins, swept): Written<'_>,
-    faults: &mut Faults<'_>,
-) {
-    let of_sweep = |name: &str| find("surface", name).is_some_and(|key| swept.contains(&key));
-    for name in GENERATED {
-        // If one of the two is in the base and the other in a sweep, the spec has both kinds of surface.
-        if of_sweep(name) == of_sweep("file")
-            && let Some(span) = written(find("surface", name), origins)
-        {
-            let message = format!(
-                "`surface.{name}` describes a generated surface, and `surface.file` names a measured one"
-            );
-            faults.add(&span, message, "remove one of the two keys".to_owned());
-        }
-    }
-    if surface.periodic
-        && surface.detrend != Detrend::Mean
-        && let Some(span) = written(find("surface", "detrend"), origins)
-    {
-        let word = surface.detrend.word();
-        let message = format!(
-            "`surface.detrend` is \"{word}\", and `surface.periodic` is true: the removed shape is not \
-             periodic"
-        );
-        let help =
-            "write detrend = \"mean\" (the default of a periodic surface), or periodic = false".to_owned();
-        faults.add(&span, message, help);
-    }
-    if !surface.periodic && case.asperities().is_some_and(|options| options.boundary == Boundary::Periodic) {
-        let boundary = written(find("model", "boundary"), origins);
-        let of_surface = |name: &str| written(find("surface", name), origins);
-        if let Some(span) = boundary.or_else(|| of_surface("periodic")).or_else(|| of_surface("file")) {
-            let message = "a non-periodic measured surface requires model.boundary = \"isolated\"".to_owned();
-            let help = "write model.boundary = \"isolated\", or surface.periodic = true for a periodic scan"
-                .to_owned();
-            faults.add(&span, message, help);
-        }
-    }
-}
-
 /// Checks what depends on two values of a case.
-fn check(case: &CaseParams, values: &Values, written: Written<'_>, faults: &mut Faults<'_>) {
+fn check(case: &CaseParams, values: &Values, written: (&[Origin], &[usize]), faults: &mut Faults<'_>) {
     check_contact(case, values, written.0, faults);
     if let Some(options) = case.elements() {
         check_elements(case, options, values, written.0, faults);

@@ -144,6 +144,10 @@ fn definition(key: &Key) -> Value {
                 "pattern": PLAIN,
             })
         }
+        Kind::Texts(count, most, _) => {
+            let item = json!({ "type": "string", "minLength": 1, "maxLength": most, "pattern": PLAIN });
+            json!({ "type": "array", "items": item, "minItems": 1, "maxItems": count, "uniqueItems": true })
+        }
         Kind::Length(_) => json!({ "type": "string", "maxLength": 16, "pattern": LENGTH_PATTERN }),
     };
     let symbol = if key.symbol.is_empty() { String::new() } else { format!("{}: ", key.symbol) };
@@ -157,7 +161,7 @@ fn definition(key: &Key) -> Value {
     };
     schema["description"] = format!("{symbol}{}{unit}{choices}", key.meaning).into();
     let default = json!((key.get)(&Values::default()));
-    if default != "" {
+    if default != "" && !matches!(key.kind, Kind::Texts(..)) {
         schema["default"] = default;
     }
     schema

@@ -47,6 +47,8 @@ pub(super) enum Kind {
     Words(Words),
     /// A text: maximum number of bytes, and its meaning.
     Text(usize, &'static str),
+    /// An array of texts on one line: maximum number of elements and of bytes, and their meaning.
+    Texts(usize, usize, &'static str),
     /// A unit of length, or an empty text if the file states it.
     Length(&'static str),
 }
@@ -61,7 +63,7 @@ impl Key {
 impl Kind {
     /// True if one value of this kind is an array already.
     pub(super) fn is_list(&self) -> bool {
-        matches!(self, Self::Numbers(..) | Self::Words(..))
+        matches!(self, Self::Numbers(..) | Self::Words(..) | Self::Texts(..))
     }
 }
 
@@ -234,6 +236,10 @@ pub(super) static KEYS: &[Key] = &[
     key!(surface.file in measured.file, "", "File of a measured surface. With this key, the surface is \
          imported and not generated.";
         text 4096, "the file of a measured surface, from the working directory or the folder of the spec"),
+    key!(surface.files in measured.files, "", "Files of several scans of one sample, instead of `file`: the \
+         scans are the realizations of one case, and all other keys hold for each of them."; Kind::Texts(
+        1000, 4096, "the files of scans, from the working directory or the folder of the spec",
+    ), |files: &Vec<String>| Value::Texts(files.clone()), Texts(files) => Some(files.clone())),
     key!(surface.dataset in measured.dataset, "", "Field of the file, if it has several: a dataset of HDF5, \
          a variable of NetCDF."; text 256, "a dataset of the file"),
     key!(surface.periodic in measured.periodic, "", "True if the measured surface is periodic."; flag),
@@ -407,7 +413,7 @@ pub const OPTIONAL_TABLES: [&str; 3] = ["probe", "machine", "substrate"];
 pub const OTHER_LOADS: [&str; 2] = ["max_force_n", "max_pressure_pa"];
 
 /// Keys of `[surface]` that describe a measured surface.
-pub const MEASURED: [&str; 17] = [
+pub const MEASURED: [&str; 18] = [
     "file",
     "dataset",
     "periodic",
@@ -425,6 +431,7 @@ pub const MEASURED: [&str; 17] = [
     "align_rows",
     "fast_axis",
     "tip_radius_m",
+    "files",
 ];
 /// Keys of `[surface]` that describe a generated one.
 pub const GENERATED: [&str; 15] = [
@@ -448,6 +455,8 @@ pub const GENERATED: [&str; 15] = [
 pub const REPLACED: [&str; 4] = ["rms_height_m", "hurst", "normalization", "roll_off_m"];
 /// Keys that a resolved spec has only where they are not at their default: those after `amplitudes`.
 pub const WHERE_USED: &[&str] = GENERATED.split_at(6).1;
+/// Keys of `[surface]` that name the scans of a measured surface: a resolved spec has the one that is used.
+pub const NAMES: [&str; 2] = ["file", "files"];
 /// Keys of `[surface]` that describe the table of a spectrum: those after `spectrum`.
 pub(super) const OF_TABLE: &[&str] = WHERE_USED.split_at(5).1;
 

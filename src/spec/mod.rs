@@ -21,6 +21,7 @@ mod probe;
 mod psd;
 mod realizations;
 mod reference;
+mod scans;
 mod settings;
 mod shape;
 mod sweep;
@@ -49,7 +50,7 @@ pub use elements::{
 pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};
 pub use json_schema::{SCHEMA_FILE, json_schema};
-pub use keys::{GENERATED, MEASURED, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, WHERE_USED};
+pub use keys::{GENERATED, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, WHERE_USED};
 pub use probe::probe_refusal;
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
@@ -227,6 +228,8 @@ pub enum Value {
     Numbers(Vec<f64>),
     /// Words of a choice, in the order of the choice, each once.
     Words(Vec<&'static str>),
+    /// Texts, such as the names of files, in the order written.
+    Texts(Vec<String>),
 }
 
 impl Spec {

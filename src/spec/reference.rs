@@ -99,7 +99,7 @@ fn top() -> String {
 - `name`: Name of the run and of its default output directory.
 - `seed`: Seed of all generated surfaces. The same seed gives the same surfaces.
 - `realizations`: Number of surfaces of each case. A table chooses it automatically:
-  `realizations = {{ until_relative_ci = 0.05, of = \"loss\" }}`. A measured surface is one realization.
+  `realizations = {{ until_relative_ci = 0.05, of = \"loss\" }}`. A scan is one realization.
 - `realizations.until_relative_ci`: Realizations are added until the half-width of the 95 %
   confidence interval of the mean is below this fraction of the mean, at every load.
 - `realizations.of`: Quantity whose mean is considered.
@@ -170,6 +170,7 @@ fn section(table: &str) -> String {
     for key in keys() {
         let more = match &key.kind {
             Kind::Numbers(_, most) => format!(" Up to {most} values, each once."),
+            Kind::Texts(most, ..) => format!(" Up to {most}, each once."),
             Kind::Length(_) => format!(" Units: {LENGTHS}."),
             _ => String::new(),
         };
@@ -201,7 +202,7 @@ pub(super) fn described(kind: &Kind) -> (&'static str, &'static str, String) {
         Kind::Count { low, high, .. } => ("integer", "", format!("{low} to {high}")),
         Kind::Flag => ("boolean", "", String::new()),
         Kind::Word(_) | Kind::Text(..) | Kind::Length(_) => ("string", "", String::new()),
-        Kind::Words(_) => ("array of strings", "", String::new()),
+        Kind::Words(_) | Kind::Texts(..) => ("array of strings", "", String::new()),
     }
 }
 
@@ -214,6 +215,7 @@ fn range(limits: &Limits) -> String {
 fn default(key: &Key) -> String {
     match (key.get)(&Values::default()) {
         Value::Text(text) if text.is_empty() => String::new(),
+        Value::Texts(texts) if texts.is_empty() => String::new(),
         Value::Number(number) => format!("`{}`", short(number)),
         known => format!("`{}`", value(&known)),
     }

@@ -95,7 +95,7 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     // Other values may lead to another choice.
     draft.auto_methods.clear();
     // The hashes are of the files that the spec names.
-    if path == "surface.file" {
+    if ["surface.file", "surface.files"].contains(&path) {
         draft.files.clear();
     }
     let has_axis = |sweep: &Option<SweepDraft>| {

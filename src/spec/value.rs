@@ -36,6 +36,9 @@ pub(super) fn read(key: &Key, value: &Written<'_>, faults: &mut Faults<'_>) -> O
         Kind::Numbers(limits, most) => numbers(key, limits, *most, value, faults).map(Value::Numbers),
         Kind::Text(most, note) => text(key.path, *most, note, value, faults).map(Value::Text),
         Kind::Length(note) => length(key.path, note, value, faults).map(Value::Text),
+        Kind::Texts(count, most, note) => {
+            texts(key.path, (*count, *most), note, value, faults).map(Value::Texts)
+        }
         Kind::Words(choice) => {
             let words = words(choice);
             let elements = array(key.path, "strings", value, faults)?;
@@ -70,6 +73,48 @@ fn text(path: &str, most: usize, note: &str, value: &Written<'_>, faults: &mut F
         return None;
     }
     Some(found.to_string())
+}
+
+/// Texts on one line, at least one and each once.
+fn texts(
+    path: &str,
+    (count, most): (usize, usize),
+    note: &str,
+    value: &Written<'_>,
+    faults: &mut Faults<'_>,
+) -> Option<Vec<String>> {
+    let elements = array(path, "strings", value, faults)?;
+    if elements.is_empty() || elements.len() > count {
+        let is_empty = elements.is_empty();
+        let number =
+            if is_empty { "is empty".to_owned() } else { format!("has {} elements", elements.len()) };
+        let help = if is_empty {
+            "name at least one file, or remove the key".to_owned()
+        } else {
+            format!("use at most {count}")
+        };
+        faults.add(&value.span(), format!("`{path}` {number}: it is {note}"), help);
+        return None;
+    }
+    let mut found: Vec<String> = Vec::with_capacity(elements.len());
+    for element in elements {
+        let read = text(path, most, note, element, faults)?;
+        if read.is_empty() || found.contains(&read) {
+            let problem = if read.is_empty() {
+                format!("`{path}` has an empty name")
+            } else {
+                format!("`{path}` names {} twice", faults.written(&element.span()))
+            };
+            faults.add(
+                &element.span(),
+                problem,
+                "remove this entry: each scan is one realization".to_owned(),
+            );
+            return None;
+        }
+        found.push(read);
+    }
+    Some(found)
 }
 
 /// A unit of length, or none.

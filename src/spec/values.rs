@@ -85,7 +85,7 @@ impl Values {
     /// asperity model.
     #[must_use]
     pub fn case(&self) -> CaseParams {
-        let surface = if self.measured.file.is_empty() {
+        let surface = if !self.measured.is_named() {
             SurfaceSource::Generated(generated(&self.generated))
         } else {
             let points_per_shortest_wavelength = self.generated.points_per_shortest_wavelength;
@@ -138,7 +138,7 @@ impl Values {
 
     /// Side of the nominal square \[m\]; of a measured surface nothing unless the spec states it.
     pub(super) fn length_m(&self) -> Option<f64> {
-        if self.measured.file.is_empty() {
+        if !self.measured.is_named() {
             return Some(self.generated.length_m);
         }
         let MeasuredSurface { size_m, size_y_m, .. } = self.measured;
@@ -215,7 +215,8 @@ impl Serialize for Values {
         let default = Self::default();
         let says = |key: &Key| (key.get)(self) != (key.get)(&default);
         let keys = |table: &'static str| KEYS.iter().filter(move |key| key.table == table);
-        let is_shown = |key: &&Key| !OTHER_LOADS.contains(&key.name) || says(key);
+        let is_optional = |key: &Key| OTHER_LOADS.contains(&key.name) || key.name == "files";
+        let is_shown = |key: &&Key| !is_optional(key) || says(key);
         let values = |table| {
             let shown = keys(table).filter(is_shown);
             shown.map(|key| (key.name, (key.get)(self))).collect::<BTreeMap<&str, Value>>()

@@ -160,7 +160,11 @@ fn base(
         let key = &KEYS[place];
         let read = if !key.kind.is_list() && written.get_ref().is_array() {
             let message = format!("`{}` must be a single value here, not an array", key.path);
-            faults.add(&written.span(), message, "move the array to a [[sweep]]".to_owned());
+            let help = match key.path {
+                "surface.file" => "write surface.files for several scans of one sample, or use a [[sweep]]",
+                _ => "move the array to a [[sweep]]",
+            };
+            faults.add(&written.span(), message, help.to_owned());
             None
         } else {
             value::read(key, written, faults)

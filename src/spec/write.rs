@@ -3,7 +3,7 @@
 use std::fmt::{Error, Write as _};
 
 use super::keys::{
-    GENERATED, KEYS, Key, MEASURED, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, TABLES, WHERE_USED,
+    GENERATED, KEYS, Key, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, TABLES, WHERE_USED,
 };
 use super::values::Values;
 use super::{Case, Spec, Value};
@@ -64,12 +64,13 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
 fn is_read(key: &Key, base: &Values) -> bool {
     let default = Values::default();
     let says = |key: &Key| (key.get)(base) != (key.get)(&default);
-    let is_generated = base.measured.file.is_empty();
+    let is_generated = !base.measured.is_named();
     match key.table {
         "surface" => {
             let others: &[&str] = if is_generated { &MEASURED } else { &GENERATED };
             let is_replaced = is_generated && base.generated.is_tabulated() && REPLACED.contains(&key.name);
-            !(others.contains(&key.name) || is_replaced || WHERE_USED.contains(&key.name)) || says(key)
+            let is_optional = WHERE_USED.contains(&key.name) || NAMES.contains(&key.name);
+            !(others.contains(&key.name) || is_replaced || is_optional) || says(key)
         }
         "cycle" if OTHER_LOADS.contains(&key.name) => says(key),
         "cycle" if key.name == "max_load" => base.max_force_n.is_empty() && base.max_pressure_pa.is_empty(),
@@ -103,6 +104,7 @@ pub(super) fn value(value: &Value) -> String {
         Value::Flag(flag) => flag.to_string(),
         Value::Word(word) => format!("\"{word}\""),
         Value::Text(text) => quoted(text),
+        Value::Texts(texts) => format!("[{}]", list(texts.iter().map(|text| quoted(text)))),
         Value::Numbers(numbers) => format!("[{}]", list(numbers.iter().map(|number| format!("{number:?}")))),
         Value::Words(words) => {
             format!("[{}]", list(words.iter().map(|word| format!("\"{word}\""))))

@@ -1,16 +1,16 @@
 //! Stage aggregate: from the steps, events and estimates of all cycles to the tables over realizations.
 
 use super::cycle::lattice;
-use super::cycle_input::{SurfaceRow, cycle_input, of_failed};
+use super::cycle_input::{cycle_input, of_failed};
 use super::done::{Clock, Outcome};
 use super::error::incomplete;
+use super::extent::{Extent, common, own_file};
 use super::measured_loop::{self, MeasuredLoop, measure_loop};
 use super::runner::{Context, Single, run_single};
 use super::surface::scale;
-use super::{StageError, Tally, datapackage};
+use super::{StageError, Tally, datapackage, spectra};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Choice;
-use crate::schema::{CaseFacts, PARAMETERS};
 use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Planned};
 use crate::store::commit::Written;
@@ -86,6 +86,12 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
     if let Some(loops) = measured_loops(campaign)? {
         files.push(write(&measured_loop::rows(&loops)?)?);
         files.push(write(&measured_loop::steps(&loops)?)?);
+    }
+    let samples = spectra::samples(campaign)?;
+    if !samples.is_empty() {
+        files.push(write(&spectra::scans_table(&samples)?)?);
+        files.push(write(&spectra::scan_spectra_table(&samples)?)?);
+        files.push(write(&spectra::spectrum_table(&samples)?)?);
     }
     let finished: Vec<bool> = standings.iter().map(|standing| *standing == Standing::Done).collect();
     for (place, text) in datapackage::files(campaign, &finished) {
@@ -170,7 +176,7 @@ fn side_by_side(campaign: &Campaign) -> Vec<[String; 2]> {
 fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
     let row = |(unit, standing): (&CycleUnit, &Standing)| Planned {
         case_id: campaign.cases[unit.case].id.clone(),
-        realization: i64::from(campaign.surfaces[unit.surface].realization),
+        realization: i64::from(unit.realization),
         cycle_id: unit.id.clone(),
         surface_id: campaign.surfaces[unit.surface].id.clone(),
         status: match standing {
@@ -182,6 +188,7 @@ fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
             Standing::Done => campaign.not_reached_in_tables(unit),
             _ => campaign.failure_in_tables(unit, standing),
         },
+        own: own_file(campaign, unit),
     };
     campaign.cycles.iter().zip(standings).map(row).collect()
 }
@@ -194,32 +201,26 @@ fn case_input(
 ) -> Result<CaseInput, StageError> {
     let params = &unit.case.params;
     let surface = &params.surface;
-    let of_case = campaign
+    let mut of_case = campaign
         .cycles
         .iter()
-        .find(|cycle| cycle.case == number)
+        .filter(|cycle| cycle.case == number)
         .map(|cycle| &campaign.surfaces[cycle.surface]);
-    // The import of a measured surface may have failed.
-    let of_scan = of_case.filter(|of| surface.measured().is_some() && campaign.estimates_path(of).is_file());
-    let of_generated = surface.generated().and(of_case).map(|of| scale(campaign, of));
-    let known = of_generated.and_then(|scale| Some(scale.ok()?.rms_height_m));
-    let row = of_scan.map(|of| SurfaceRow::read(campaign, of)).transpose()?;
-    let square = row.as_ref().map(|row| row.square(params)).transpose()?;
-    let lattice = lattice(params, square);
-    let rms_height_m = row.as_ref().map(SurfaceRow::rms_height_m).transpose()?;
-    let generated = surface.generated();
-    let facts = CaseFacts {
-        params,
-        surface_file: campaign.label_of(surface),
-        length_m: square.map(|square| square.length_m).or(generated.map(|of| of.length_m)),
-        rms_height_m: rms_height_m.or(known),
-        element_points: lattice.map(|lattice| lattice.points as f64),
-        attraction_range_m: lattice.and_then(|lattice| lattice.range_m),
+    let extent = if surface.measured().is_some() {
+        // The import of a measured surface may have failed.
+        let read = of_case.filter(|of| campaign.estimates_path(of).is_file());
+        common(&read.map(|of| Extent::of_scan(campaign, of, params)).collect::<Result<Vec<_>, _>>()?)
+    } else {
+        let known = of_case.next().and_then(|of| Some(scale(campaign, of).ok()?.rms_height_m));
+        let lattice = lattice(params, None);
+        Extent {
+            length_m: surface.generated().map(|of| of.length_m),
+            rms_height_m: known,
+            element_points: lattice.map(|lattice| lattice.points as f64),
+            attraction_range_m: lattice.and_then(|lattice| lattice.range_m),
+        }
     };
-    let parameters = PARAMETERS
-        .iter()
-        .map(|parameter| (parameter.column.name.to_owned(), (parameter.get)(&facts).into()))
-        .collect();
+    let parameters = extent.parameters(params, campaign.label_of(surface), |_| true);
     let failed = |(cycle, standing): (&CycleUnit, &Standing)| {
         cycle.case == number && matches!(standing, Standing::Failed(_))
     };

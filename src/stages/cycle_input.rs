@@ -2,6 +2,7 @@
 
 use super::StageError;
 use super::cycle::Square;
+use super::extent::own_columns;
 use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
 use crate::schema::{
     Column, DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
@@ -71,9 +72,10 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
     };
     let mut of_surface = given(&estimates, OF_CYCLE, 0)?;
     of_surface.extend(given(&SurfaceRow::read(campaign, surface)?.0, OF_SURFACE, 0)?);
+    of_surface.extend(own_columns(campaign, unit)?);
     Ok(CycleInput {
         case_id: case.id.clone(),
-        realization: i64::from(surface.realization),
+        realization: i64::from(unit.realization),
         cycle_id: unit.id.clone(),
         surface_id: surface.id.clone(),
         steps: folder.join("steps.parquet"),

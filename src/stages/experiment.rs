@@ -31,7 +31,8 @@ pub(super) fn beside(
         return Ok(Some(MeasuredLoops { panel: measured_loops(&points, None)?, loops }));
     };
     let case = &campaign.cases[unit.case].case.params;
-    let parameters = parameters(case, campaign.label_of(&case.surface).as_deref(), max_load);
+    let parameters =
+        parameters(case, campaign.label_of(&campaign.surfaces[unit.surface].params).as_deref(), max_load);
     let steps = read_table(&campaign.cycle_dir(unit).join("steps.parquet"), &schema::STEPS)?;
     let simulated = Simulated { max_load, parameters: &parameters, steps: &steps };
     Ok(Some(MeasuredLoops { panel: measured_loops(&points, Some(&simulated))?, loops }))

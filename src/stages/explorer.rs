@@ -146,7 +146,7 @@ fn name(campaign: &Campaign, unit: &CycleUnit, cases: &Frame, list: &Listing) ->
     let label =
         list.rows.iter().find(|listed| ids[listed.row] == case.id).map_or("", |listed| listed.label.as_str());
     let label = if label.is_empty() { case.id.as_str() } else { label };
-    Ok(format!("{label}, realization {}", campaign.surfaces[unit.surface].realization))
+    Ok(format!("{label}, realization {}", unit.realization))
 }
 
 /// File of the maps of a cycle.

@@ -15,8 +15,8 @@ pub(super) struct Identity<'a> {
 
 impl<'a> Identity<'a> {
     pub(super) fn of(campaign: &'a Campaign, unit: &'a CycleUnit) -> Self {
-        let (case, surface) = (&campaign.cases[unit.case], &campaign.surfaces[unit.surface]);
-        Self { cycle_id: &unit.id, case_id: &case.cycle_case_id, realization: surface.realization }
+        let realization = campaign.surfaces[unit.surface].realization;
+        Self { cycle_id: &unit.id, case_id: &unit.table_case_id, realization }
     }
 
     /// Begins a table with these columns and `rows` rows.

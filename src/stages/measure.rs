@@ -2,10 +2,12 @@
 
 use super::StageError;
 use super::correction::{corrected, refused};
+use super::spectra::scan_spectrum;
 use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::MeasuredSurface;
 use crate::model::{Detrend, Filter};
+use crate::physics::surface::common_spectrum::ScanSpectrum;
 use crate::physics::surface::edges::Edges;
 use crate::physics::surface::measured::{Prepared, Treatment};
 use crate::physics::surface::periodogram::{Estimate, periodogram, windowed_periodogram};
@@ -33,6 +35,15 @@ pub struct Imported {
     pub height_factor_m: Option<f64>,
     /// Sentences on how the file was read.
     pub notes: Vec<String>,
+}
+
+impl Imported {
+    /// Spectrum before the S-filter, with its limits of reliability. A surface of this program has passed the
+    /// filter already.
+    #[must_use]
+    pub fn spectrum(&self) -> ScanSpectrum {
+        scan_spectrum(&self.header, &self.prepared.rings, self.height_factor_m.is_none())
+    }
 }
 
 /// A measured surface with the preprocessing of the spec, and the header of its file in a run. `digest` is

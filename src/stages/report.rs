@@ -8,9 +8,11 @@ use super::explorer::explorer;
 use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
 use super::{StageError, Tally};
-use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
-use crate::figures::{Drawing, Panel, Tables, Units, file, method_ratios, panels, sensitivity, table};
-use crate::report::{self, Failure, MeasuredLoops, MethodFigures, Report, SingleCycle};
+use crate::campaign::{Campaign, CaseUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
+use crate::figures::{
+    Drawing, Panel, Spectra, Tables, Units, file, method_ratios, panels, sensitivity, spectra, table,
+};
+use crate::report::{self, Failure, MeasuredLoops, MethodFigures, Report, ScanSpectra, SingleCycle};
 use crate::schema;
 use crate::spec::Figures;
 use crate::store::hdf5::{SurfaceHeader, read_header};
@@ -47,6 +49,7 @@ struct Drawings {
     methods: MethodFigures,
     sensitivity: Option<Drawing>,
     measured_loops: Option<MeasuredLoops>,
+    scan_spectra: Option<ScanSpectra>,
 }
 
 impl Drawings {
@@ -68,6 +71,7 @@ impl Drawings {
             },
             sensitivity: sensitivity(cases, realizations)?,
             measured_loops: beside(campaign, standings, cases)?,
+            scan_spectra: scan_spectra(campaign)?,
         })
     }
 
@@ -79,14 +83,19 @@ impl Drawings {
             .chain(&self.methods.maps)
             .chain(&self.sensitivity)
             .map(|drawing| (drawing.stem, drawing.svg.as_str()));
-        let measured = self.measured_loops.iter().map(|of| &of.panel);
+        let measured = self.measured_loops.iter().map(|of| &of.panel).chain(self.spectra());
         let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle).chain(measured);
         panels.map(drawing).chain(others).chain(self.methods.ratios.as_ref().map(drawing))
     }
 
+    /// Panels of the spectra of scans.
+    fn spectra(&self) -> impl Iterator<Item = &Panel> {
+        self.scan_spectra.iter().flat_map(|of| &of.panels)
+    }
+
     /// All panels with the names of their sweeps; those of the single cycle have none.
     fn all_panels(&self) -> Vec<(String, Panel)> {
-        let measured = self.measured_loops.iter().map(|of| &of.panel);
+        let measured = self.measured_loops.iter().map(|of| &of.panel).chain(self.spectra());
         let single = self.cycles.iter().flat_map(|cycle| &cycle.panels).chain(measured);
         let cycle = single.map(|panel| (String::new(), panel.clone()));
         self.panels.iter().cloned().chain(cycle).collect()
@@ -171,6 +180,7 @@ fn page(
         method_figures: &drawings.methods,
         scans: &scans(campaign)?,
         measured_loops: drawings.measured_loops.as_ref(),
+        scan_spectra: drawings.scan_spectra.as_ref(),
         sweeps: &sweeps(campaign),
         drawings: &drawings.panels,
         cycles: &drawings.cycles,
@@ -184,6 +194,21 @@ fn is_in_si(campaign: &Campaign) -> bool {
     let base = &campaign.spec.base;
     let has_probe = campaign.cases.iter().any(|unit| unit.case.params.probe.is_some());
     has_probe || !base.max_force_n.is_empty() || !base.max_pressure_pa.is_empty()
+}
+
+/// Spectra of the scans of `surface.files`, and their panels.
+fn scan_spectra(campaign: &Campaign) -> Result<Option<ScanSpectra>, StageError> {
+    let is_list =
+        |unit: &CaseUnit| unit.case.params.surface.measured().is_some_and(|of| !of.files.is_empty());
+    if !campaign.cases.iter().any(is_list) {
+        return Ok(None);
+    }
+    let read =
+        |table: &'static schema::Table| parquet::read_table(&campaign.statistics_path(table.name), table);
+    let (common, of_scans, scans) =
+        (read(&schema::SPECTRUM)?, read(&schema::SCAN_SPECTRA)?, read(&schema::SCANS)?);
+    let panels = spectra(&Spectra { common: &common, of_scans: &of_scans, scans: &scans })?;
+    Ok(Some(ScanSpectra { scans, panels }))
 }
 
 /// The words of a text without its numbers.

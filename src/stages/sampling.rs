@@ -78,6 +78,9 @@ fn count(campaign: &Campaign, case: usize, standings: &[Standing], until: &Until
         })
         .collect::<Result<_, StageError>>()?;
     let known: Option<Vec<Outcome>> = outcomes.into_iter().collect();
+    if campaign.cases[case].case.params.surface.measured().is_some() {
+        return Ok(campaign.counts[case]);
+    }
     Ok(known.map_or(campaign.counts[case], |known| enough(&known, until)))
 }
 

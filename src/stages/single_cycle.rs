@@ -83,7 +83,8 @@ fn of_elements(
     let chosen = choose(campaign, standings, cases, Method::BoundaryElements, |_| true)?;
     let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
     let case = &campaign.cases[unit.case].case.params;
-    let parameters = parameters(case, campaign.label_of(&case.surface).as_deref(), max_load);
+    let parameters =
+        parameters(case, campaign.label_of(&campaign.surfaces[unit.surface].params).as_deref(), max_load);
     let folder = campaign.cycle_dir(unit);
     let steps = read_table(&folder.join(format!("{}.parquet", schema::STEPS.name)), &schema::STEPS)?;
     let maps = read_loop_maps(&folder.join("maps.h5"), max_load)?;
@@ -95,7 +96,7 @@ fn of_elements(
     })?;
     Ok(Some(SingleCycle {
         id: unit.id.clone(),
-        realization: campaign.surfaces[unit.surface].realization,
+        realization: unit.realization,
         choice: choice(Some(Method::BoundaryElements), has_larger),
         files: "The table `events` of the cycle holds all events, the table `contacts` the regions of \
              contact, the file `maps.h5` gap and pressure.",
@@ -119,7 +120,8 @@ fn of_asperities(
     let has_elements = cases.text("method")?.iter().any(|method| *method != Method::Asperities.word());
     let choice = choice(has_elements.then_some(Method::Asperities), has_larger);
     let case = &campaign.cases[unit.case].case.params;
-    let parameters = parameters(case, campaign.label_of(&case.surface).as_deref(), max_load);
+    let parameters =
+        parameters(case, campaign.label_of(&campaign.surfaces[unit.surface].params).as_deref(), max_load);
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;

@@ -52,23 +52,31 @@ pub(super) fn previews(campaign: &Campaign) -> Previews {
 
 /// The verdicts on all cases.
 pub(super) fn verdicts(campaign: &Campaign, previews: &Previews) -> Vec<Verdict> {
-    let mut surfaces = vec![None; campaign.cases.len()];
+    let mut cycles: Vec<Vec<&CycleUnit>> = vec![Vec::new(); campaign.cases.len()];
     for cycle in &campaign.cycles {
-        surfaces[cycle.case].get_or_insert(cycle);
+        cycles[cycle.case].push(cycle);
     }
     let trial = Trial::default();
-    let of = |(unit, cycle): (&CaseUnit, Option<&CycleUnit>)| {
-        let preview = cycle.and_then(|cycle| previews.get(&cycle.surface));
-        let is_open = || {
-            let standing = cycle.map(|cycle| campaign.cycle_standing(cycle, Check::Sizes));
-            !matches!(standing, Some(Standing::Done | Standing::Failed(_)))
-        };
-        let of_generated =
-            || cycle.filter(|_| preview.is_none()).and_then(|cycle| trial.error(campaign, unit, cycle));
-        let error = if is_open() { error(&unit.case.params, preview).or_else(of_generated) } else { None };
-        Verdict { error, ..verdict(unit, preview.and_then(Preview::known)) }
+    let is_open = |cycle: &CycleUnit| {
+        let standing = campaign.cycle_standing(cycle, Check::Sizes);
+        !matches!(standing, Standing::Done | Standing::Failed(_))
     };
-    campaign.cases.iter().zip(surfaces).map(of).collect()
+    let of = |(unit, cycles): (&CaseUnit, Vec<&CycleUnit>)| {
+        // Each scan has its own error; all generated surfaces of a case have one.
+        let is_measured = unit.case.params.surface.measured().is_some();
+        let checked = if is_measured { cycles.len() } else { cycles.len().min(1) };
+        let error_of = |cycle: &CycleUnit| {
+            let preview = previews.get(&cycle.surface);
+            let of_generated =
+                || Some(cycle).filter(|_| preview.is_none()).and_then(|of| trial.error(campaign, unit, of));
+            error(&unit.case.params, preview).or_else(of_generated)
+        };
+        let open = cycles[..checked].iter().copied().filter(|cycle| is_open(cycle));
+        let error = open.filter_map(error_of).next();
+        let first = cycles.first().and_then(|cycle| previews.get(&cycle.surface));
+        Verdict { error, ..verdict(unit, first.and_then(Preview::known)) }
+    };
+    campaign.cases.iter().zip(cycles).map(of).collect()
 }
 
 /// The verdict on a case without its error.
@@ -117,6 +125,21 @@ pub fn chosen_method(params: &CaseParams) -> Result<Method, (String, String)> {
             error.split_once("\nhelp: ").unwrap_or((error, "write \"asperities\" or \"boundary_elements\""));
         (problem.to_owned(), help.to_owned())
     };
+    let Some(surface) = params.surface.measured() else { return Ok(params.method.kind()) };
+    // Boundary elements for all scans if one requires them.
+    let mut method = Method::Asperities;
+    for scan in 0..surface.names().len() as u32 {
+        let scan = CaseParams { surface: params.surface.of_realization(scan), ..params.clone() };
+        method = method.max(chosen_for_scan(&scan, refused)?);
+    }
+    Ok(method)
+}
+
+/// The method for one scan.
+fn chosen_for_scan(
+    params: &CaseParams,
+    refused: impl Fn(&str) -> (String, String),
+) -> Result<Method, (String, String)> {
     let Some(surface) = params.surface.measured() else { return Ok(params.method.kind()) };
     let preview = Preview::of_scan(surface, u64::MAX, usize::MAX);
     let known = match &preview {

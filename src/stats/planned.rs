@@ -22,6 +22,8 @@ pub struct Planned {
     pub status: &'static str,
     /// Error message of a failed cycle.
     pub failure: Option<String>,
+    /// Parameters of this realization that replace those in its case: the file of one of several scans.
+    pub own: Given,
 }
 
 /// Joins planned cycles to the parameters of their cases; rows are ordered by case and realization, whatever
@@ -47,7 +49,7 @@ pub fn planned(cases: &[CaseInput], cycles: &[Planned]) -> Result<Frame, StatsEr
             ("failure", cycle.failure.as_deref().into()),
         ];
         let row: Given = columns.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-        rows.push(&[&identity(case), &row, &case.parameters]);
+        rows.push(&[&identity(case), &row, &cycle.own, &case.parameters]);
     }
     rows.build()
 }

@@ -40,7 +40,8 @@ pub fn realizations(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame,
     ordered.sort_by(|a, b| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
     let mut rows = Rows::of(&REALIZATIONS);
     for (_, _, _, results, case, input) in &ordered {
-        rows.push(&[&identity(case), results, &case.parameters, &input.surface]);
+        // Of several scans each has its own file and size.
+        rows.push(&[&identity(case), results, &input.surface, &case.parameters]);
     }
     rows.build()
 }

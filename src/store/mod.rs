@@ -8,6 +8,7 @@ mod attributes;
 mod axes;
 mod builder;
 pub mod commit;
+pub mod container;
 mod dataset;
 mod error;
 pub mod force_curve;

@@ -8,6 +8,7 @@
 mod approximate_jkr;
 mod artefacts;
 mod boundary_elements;
+mod common_spectrum;
 mod coupled;
 mod cycle;
 mod estimates;

@@ -14,6 +14,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use hysteron::campaign::Campaign;
 use hysteron::cli::{Arguments, generated};
+use hysteron::model::MeasuredSurface;
 use hysteron::schema::TABLES;
 use hysteron::spec::{OTHER_LOADS, Spec, Values, reference};
 use serde_json::{Value, json};
@@ -30,6 +31,7 @@ fn keys() -> BTreeSet<String> {
         thickness_m: Some(1.0),
         stiffness_n_m: Some(1.0),
         max_force_n: vec![1.0],
+        measured: MeasuredSurface { files: vec!["a".to_owned()], ..MeasuredSurface::default() },
         max_pressure_pa: vec![1.0],
         ..Values::default()
     };

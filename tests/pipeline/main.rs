@@ -44,6 +44,8 @@ mod reversals;
 mod scan;
 mod schema;
 #[cfg(feature = "stats")]
+mod several;
+#[cfg(feature = "stats")]
 mod snapshots;
 mod spec;
 #[cfg(feature = "stats")]

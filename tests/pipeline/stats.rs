@@ -298,6 +298,7 @@ fn law_cycles_are_joined_to_their_cases() {
         surface_id: format!("surface-{realization}"),
         status,
         failure: failure.map(str::to_owned),
+        own: Vec::new(),
     };
     let rows = [row("c1", 1, "failed", Some("no equilibrium")), row("c0", 0, "planned", None), row("c1", 0, "done", None)];
     let table = planned(&bench.cases, &rows).unwrap();

@@ -1,9 +1,12 @@
 //! `import`: a measured surface as the model takes it, and what its spectrum says; and `export` of surfaces
 //! to other programs.
 
+mod inputs;
 mod loops;
 mod quality;
 mod range;
+mod several;
+mod several_text;
 mod text;
 
 use super::outputs::{may_be_written, undamaged_surface};
@@ -47,18 +50,18 @@ pub(in crate::cli) const LIMITS: Constants = Constants {
 };
 
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
-    let refused =
-        |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));
-    recognize(&asked.file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
-    if loops::is_meant(asked) { loops::import(asked) } else { surface(asked) }
+    if inputs::are_several(&asked.files)? {
+        return several::import(asked);
+    }
+    let file = &asked.files[0];
+    let refused = |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", file.display()));
+    recognize(file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
+    if loops::is_meant(asked, file) { loops::import(asked, file) } else { surface(asked, file) }
 }
 
-/// Imports a measured surface.
-fn surface(asked: &ImportArguments) -> Result<u8, Fault> {
-    let refused =
-        |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", asked.file.display()));
-    let digest = digest_of_file(&asked.file).map_err(|error| refused(&error))?;
-    let params = params(asked)?;
+/// Checks options for surfaces that no single one shows.
+fn check_options(asked: &ImportArguments, file: &Path) -> Result<(), Fault> {
+    let params = params(asked, file)?;
     if params.periodic && params.detrend != Detrend::Mean {
         let shape = params.detrend.word();
         let text = format!(
@@ -69,14 +72,26 @@ fn surface(asked: &ImportArguments) -> Result<u8, Fault> {
     }
     for (name, length) in [("pixel-m", asked.pixel_m), ("tip-radius", asked.tip_radius)] {
         if let Some(length) = length.filter(|length| !(*length > 0.0 && length.is_finite())) {
-            return Err(refused(&format!("--{name} is {length}\nhelp: give a positive number of metres")));
+            let file = file.display();
+            return Err(failed(format!(
+                "cannot import {file}: --{name} is {length}\nhelp: give a positive number of metres"
+            )));
         }
     }
+    Ok(())
+}
+
+/// Imports a measured surface.
+fn surface(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> {
+    let refused = |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", file.display()));
+    let digest = digest_of_file(file).map_err(|error| refused(&error))?;
+    check_options(asked, file)?;
+    let params = params(asked, file)?;
     let Imported { prepared, header, height_factor_m, notes } =
         measure(&params, &digest, "").map_err(failed)?;
-    let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
+    let out = asked.out.clone().unwrap_or_else(|| named_after(file));
     if !asked.dry_run {
-        may_be_written("the surface", &out, &asked.file, asked.force)?;
+        may_be_written("the surface", &out, file, asked.force)?;
     }
     let examined = Examined::of_measured(&header, prepared.heights_m.view()).map_err(failed)?;
     if !asked.dry_run {
@@ -86,12 +101,13 @@ fn surface(asked: &ImportArguments) -> Result<u8, Fault> {
     let range = Range::of(&examined);
     let counts = [prepared.heights_m.nrows(), examined.estimates.summit_count, examined.edge_count];
     let statistics = Statistics {
-        file: &asked.file,
+        file,
         header: &header,
         height_factor_m,
         notes: &notes,
         range: &range,
         counts,
+        fitted_1_m: prepared.fit.as_ref().filter(|_| height_factor_m.is_some()).map(|fit| fit.band_1_m),
         written,
     };
     if asked.json {
@@ -112,11 +128,12 @@ fn surface(asked: &ImportArguments) -> Result<u8, Fault> {
     Ok(0)
 }
 
-fn params(asked: &ImportArguments) -> Result<MeasuredSurface, Fault> {
+fn params(asked: &ImportArguments, file: &Path) -> Result<MeasuredSurface, Fault> {
     let default = if asked.periodic { Detrend::Mean } else { Detrend::Plane };
-    let [size_m, size_y_m] = size_m(asked)?;
+    let [size_m, size_y_m] = size_m(asked, file)?;
     Ok(MeasuredSurface {
-        file: asked.file.to_string_lossy().into_owned(),
+        file: file.to_string_lossy().into_owned(),
+        files: Vec::new(),
         dataset: asked.dataset.clone().unwrap_or_default(),
         periodic: asked.periodic,
         pixel_m: asked.pixel_m.unwrap_or_default(),
@@ -138,7 +155,7 @@ fn params(asked: &ImportArguments) -> Result<MeasuredSurface, Fault> {
 }
 
 /// Sizes along x and y \[m\] by `--size`; 0 where they are not stated.
-fn size_m(asked: &ImportArguments) -> Result<[f64; 2], Fault> {
+fn size_m(asked: &ImportArguments, file: &Path) -> Result<[f64; 2], Fault> {
     let Some(text) = &asked.size else { return Ok([0.0; 2]) };
     let read = sizes(text).filter(|sizes| sizes.iter().all(|size| (1e-9..=100.0).contains(size)));
     match read.as_deref() {
@@ -147,7 +164,7 @@ fn size_m(asked: &ImportArguments) -> Result<[f64; 2], Fault> {
         _ => {
             let help = "give the size along x, or along x and y, with a unit of length (5um, \"5um x 3um\") \
                  or in metres (5e-6)";
-            Err(failed(format!("cannot import {}: --size is {text:?}\nhelp: {help}", asked.file.display())))
+            Err(failed(format!("cannot import {}: --size is {text:?}\nhelp: {help}", file.display())))
         }
     }
 }

@@ -12,6 +12,7 @@ mod measured;
 mod outputs;
 mod place;
 mod probes;
+mod psd;
 mod show;
 mod spectra;
 mod submit;
@@ -124,6 +125,7 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         Verb::Export { what: ExportVerb::RoCrate { folder, license, publisher, force } } => {
             export::ro_crate(folder, license.as_deref(), publisher.as_deref(), *force)
         }
+        Verb::Export { what: ExportVerb::Psd(asked) } => psd::export(asked),
         Verb::Export { what: ExportVerb::Netcdf(asked) } => {
             measured::export(asked, &measured::Layout::NetCdf)
         }

@@ -23,6 +23,11 @@ pub(super) fn may_be_written(what: &str, out: &Path, source: &Path, force: bool)
             "use another --out",
         ));
     }
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.exists()) {
+        let help = format!("create the folder (mkdir -p {}), or use another --out", shell_path(folder));
+        return Err(refused(&format!("the folder {} does not exist", shown(folder)), &help));
+    }
     match std::fs::symlink_metadata(out) {
         Err(_) => Ok(()),
         Ok(_) if std::fs::metadata(out).is_ok_and(|there| !there.is_file()) => {

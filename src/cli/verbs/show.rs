@@ -9,7 +9,7 @@ use crate::campaign::{
 use crate::cli::FolderArguments;
 use crate::model::{GeneratedSurface, SurfaceSource};
 use crate::schema::{self, Table};
-use crate::spec::{CaseParams, GENERATED, MEASURED, REPLACED, WHERE_USED};
+use crate::spec::{CaseParams, GENERATED, MEASURED, NAMES, REPLACED, WHERE_USED};
 use crate::stats::{significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
 use crate::text::{shell_path, shown, visible, wrapped};
@@ -188,7 +188,8 @@ fn keep_own(surface: &SurfaceSource, all: &mut Map<String, Value>) {
     let default = json!(CaseParams::default());
     all.retain(|key, value| {
         let Some(name) = key.strip_prefix("surface.") else { return true };
-        let is_unused = WHERE_USED.contains(&name) && default["surface"][name] == *value;
+        let is_optional = WHERE_USED.contains(&name) || NAMES.contains(&name);
+        let is_unused = is_optional && default["surface"][name] == *value;
         // The rms height of a table is that of its band.
         let is_replaced = is_tabulated && name != "rms_height_m" && REPLACED.contains(&name);
         !(others.contains(&name) || is_unused || is_replaced)

@@ -1,5 +1,6 @@
 //! Limits of measured surfaces.
 
+use super::common_spectrum::{BEFORE_END, LOWEST_WINDOWED, POINTS_PER_WAVELENGTH};
 use super::continuation::MIN_MARGIN;
 use super::measured::{
     MAX_MISSING_FRACTION, MAX_POINTS, MAX_SPACING_RATIO, MIN_CURVATURE_SHARE, MIN_POINTS, SPACING_TOLERANCE,
@@ -123,5 +124,27 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "of the mean square Laplacian",
         "Wavelengths that hold less do not count as shortest wavelengths.",
         "measured",
+    ),
+    Constant::new(
+        "lowest mode of a scan",
+        &[LOWEST_WINDOWED],
+        "`2π/L`",
+        "Common spectrum: a non-periodic scan contributes from here on.",
+        "common_spectrum",
+    ),
+    Constant::new(
+        "points per wavelength of a scan",
+        &[POINTS_PER_WAVELENGTH],
+        "",
+        "Common spectrum: a scan contributes down to this wavelength.",
+        "common_spectrum",
+    ),
+    Constant::new(
+        "margin of the end of a spectrum",
+        &BEFORE_END,
+        "of its wavenumber",
+        "Common spectrum: a scan contributes up to here, before a Gaussian filter, white noise and a \
+         sharp end.",
+        "common_spectrum",
     ),
 ];

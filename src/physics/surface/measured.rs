@@ -248,7 +248,11 @@ fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], edges: Edges) -> Result<S
     let (rows, columns) = heights_m.dim();
     let side = rows.min(columns);
     if side < MIN_POINTS {
-        return Err(domain("the number of points along its shorter side", side as f64, "16 or more"));
+        return Err(domain(
+            "the number of points along its shorter side",
+            side as f64,
+            "16 or more: use a larger scan; of a text, check --width and --skip-lines",
+        ));
     }
     if side > MAX_POINTS {
         return Err(domain(

@@ -2,6 +2,7 @@
 
 pub mod artefacts;
 pub mod band_limited;
+pub mod common_spectrum;
 mod constants;
 pub(crate) mod continuation;
 pub mod edges;

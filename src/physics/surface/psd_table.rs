@@ -108,7 +108,8 @@ impl PsdTable {
     }
 }
 
-fn pieces_of(rows: &[[f64; 2]]) -> Vec<Piece> {
+/// Power laws between rows of q and C.
+pub(super) fn pieces_of(rows: &[[f64; 2]]) -> Vec<Piece> {
     let between = |pair: &[[f64; 2]]| {
         let [[from, level], [to, next]] = [pair[0], pair[1]];
         Piece { from, to, level, exponent: -(next / level).ln() / (to / from).ln() }

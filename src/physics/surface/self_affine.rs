@@ -27,6 +27,8 @@ pub struct SelfAffine {
     pub roll_off_1_m: f64,
     /// True if there is a roll-off within the band.
     pub rolls_off: bool,
+    /// Wavenumbers of the first and last ring of the fit \[1/m\].
+    pub band_1_m: [f64; 2],
     /// Rms deviation of log10 C from the fit, weighted by the inverse variance.
     pub scatter: f64,
     /// Wavenumber below which the spectrum holds no data \[1/m\]; nothing if it holds data up to the longest
@@ -92,6 +94,7 @@ pub fn fit_self_affine(rings: &[Ring], length_m: f64, estimate: Estimate) -> Opt
         plateau_m4: line.level.exp(),
         roll_off_1_m: line.corner.exp(),
         rolls_off: line.shape.rolls_off(),
+        band_1_m: line.band.map(f64::exp),
         scatter: line.scatter / LN_10,
         long_cut_1_m: band.long_cut_1_m(),
         short_cut: band.short_cut(),

@@ -171,6 +171,18 @@ fn row(cells: &[&str], decimals: &mut Decimals) -> Result<Vec<f64>, String> {
     cells.iter().map(number).collect()
 }
 
+/// The columns; two of one name are refused.
+fn distinct(columns: &[Column]) -> Result<&[Column], String> {
+    let is_twin = |column: &&Column| columns.iter().filter(|other| other.text == column.text).count() > 1;
+    match columns.iter().find(is_twin) {
+        None => Ok(columns),
+        Some(twin) => Err(format!(
+            "two columns are named {:?}\nhelp: give them different names in the heading",
+            twin.text
+        )),
+    }
+}
+
 /// Columns that are read.
 struct Chosen {
     force: usize,
@@ -181,7 +193,7 @@ struct Chosen {
 
 impl Chosen {
     fn of(table: &Table, options: &LoopOptions) -> Result<Self, String> {
-        let columns = &table.columns;
+        let columns = distinct(&table.columns)?;
         let listed =
             || columns.iter().map(|column| format!("{:?}", column.text)).collect::<Vec<_>>().join(", ");
         if columns.is_empty() {

@@ -34,6 +34,9 @@ pub(super) use numbers::room;
 /// Points that a scan may have: as many heights take 2 GiB of memory.
 pub const MOST_POINTS: u64 = 1 << 28;
 
+/// Error of a file that was cut off.
+const CUT: &str = "the file ends within the header\nhelp: copy or download the file again";
+
 /// A height field as a file has it.
 #[derive(Debug, Clone)]
 pub struct Scan {
@@ -134,6 +137,12 @@ pub fn read(path: &Path, format: Format, asked: &Asked<'_>) -> Result<Scan, Stor
         }
     })
     .map_err(|cause| StoreError::new("read the surface from", path, cause))
+}
+
+/// True for a NetCDF-3 file whose heights are those of a line scan.
+#[must_use]
+pub fn is_line_scan(path: &Path) -> bool {
+    fenced(|| netcdf::is_line(Source::open(path)?)).unwrap_or_default()
 }
 
 impl Asked<'_> {

@@ -19,6 +19,13 @@ const MASK: &str = "mask";
 /// Points of an axis whose coordinates are read.
 const MOST_COORDINATES: u64 = 1 << 20;
 
+/// True for heights along one dimension.
+pub(super) fn is_line(mut source: Source) -> Result<bool, Cause> {
+    let header = Header::read(&mut source)?;
+    let heights = header.variables.iter().find(|variable| variable.name == HEIGHTS);
+    Ok(heights.is_some_and(|heights| heights.dimensions.len() == 1))
+}
+
 /// Reads a variable as heights.
 pub(super) fn read(mut source: Source, variable: Option<&str>) -> Result<Scan, Cause> {
     let header = Header::read(&mut source)?;
@@ -156,7 +163,8 @@ impl Header {
         match self.variables.iter().find(|variable| end(variable).is_none_or(|end| end > length)) {
             None => Ok(()),
             Some(cut) => {
-                Err(format!("the file ends within variable {:?}; it was probably truncated", cut.name).into())
+                let problem = "it was probably truncated\nhelp: copy or download the file again";
+                Err(format!("the file ends within variable {:?}; {problem}", cut.name).into())
             }
         }
     }

@@ -4,7 +4,7 @@ use std::io::Read;
 
 use super::attributes::{Attributes, Value, decoded};
 use super::numbers::{Number, Order};
-use super::{Cause, Source};
+use super::{CUT, Cause, Source};
 
 /// Bytes that a name may have; NetCDF itself allows 256.
 const LONGEST_NAME: u64 = 1024;
@@ -91,7 +91,7 @@ struct Bytes<'a> {
 
 impl Bytes<'_> {
     fn spend(&mut self, count: u64) -> Result<(), Cause> {
-        self.left = self.left.checked_sub(count).ok_or("the file ends within the header")?;
+        self.left = self.left.checked_sub(count).ok_or(CUT)?;
         Ok(())
     }
 
@@ -155,11 +155,9 @@ impl Bytes<'_> {
         for _ in 0..self.list(12, "attributes")? {
             let name = self.name()?;
             let (kind, count) = (self.kind()?, self.count()?);
-            let length = count
-                .checked_mul(kind.map_or(1, |kind| kind.width() as u64))
-                .ok_or("the file ends within the header")?;
+            let length = count.checked_mul(kind.map_or(1, |kind| kind.width() as u64)).ok_or(CUT)?;
             if length > LONGEST_ATTRIBUTE {
-                self.skip(length.checked_add(padding(length)).ok_or("the file ends within the header")?)?;
+                self.skip(length.checked_add(padding(length)).ok_or(CUT)?)?;
                 continue;
             }
             let bytes = self.take(length)?;

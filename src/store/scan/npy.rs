@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use super::numbers::{Layout, Number, Order, field, points};
-use super::{Cause, FirstIndex, Scan, Source};
+use super::{CUT, Cause, FirstIndex, Scan, Source};
 
 /// Bytes that the line may have; NumPy itself reads 10 000.
 const LONGEST_LINE: u64 = 1 << 16;
@@ -38,7 +38,7 @@ pub(super) fn read(mut source: Source) -> Result<Scan, Cause> {
 /// The line, and where the numbers begin.
 fn line(source: &mut Source) -> Result<(String, u64), Cause> {
     let mut fixed = [0; 8];
-    source.file.read_exact(&mut fixed).map_err(|_| "the file ends within the header")?;
+    source.file.read_exact(&mut fixed).map_err(|_| CUT)?;
     let [0x93, b'N', b'U', b'M', b'P', b'Y', version, _] = fixed else {
         return Err("not a NumPy file: wrong signature".into());
     };
@@ -57,7 +57,10 @@ fn line(source: &mut Source) -> Result<(String, u64), Cause> {
     let length = length.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte));
     let start = fixed.len() as u64 + width + length;
     if start > source.length {
-        return Err(format!("the file ends within the header of {length} bytes").into());
+        return Err(format!(
+            "the file ends within the header of {length} bytes\nhelp: copy or download the file again"
+        )
+        .into());
     }
     if length > LONGEST_LINE {
         return Err(format!("the header has {length} bytes (limit {LONGEST_LINE})").into());

@@ -48,7 +48,7 @@ fn val_a_fault_looks_like_this() {
        |
      3 | hurts = 0.8
        | ^^^^^
-       = help: did you mean `hurst`? keys of [surface]: length_m, rms_height_m, hurst, magnification, points_per_shortest_wavelength, normalization, amplitudes, longest_wavelength_m, roll_off_m, aspect_ratio, angle_deg, spectrum, spectrum_kind, spectrum_convention, spectrum_unit, spectrum_series, file, dataset, periodic, pixel_m, size_m, size_y_m, unit, skip_lines, width, transpose, missing, detrend, filter, outliers, align_rows, fast_axis, tip_radius_m
+       = help: did you mean `hurst`? keys of [surface]: length_m, rms_height_m, hurst, magnification, points_per_shortest_wavelength, normalization, amplitudes, longest_wavelength_m, roll_off_m, aspect_ratio, angle_deg, spectrum, spectrum_kind, spectrum_convention, spectrum_unit, spectrum_series, file, files, dataset, periodic, pixel_m, size_m, size_y_m, unit, skip_lines, width, transpose, missing, detrend, filter, outliers, align_rows, fast_axis, tip_radius_m
     ");
     // A tab above has a tab below.
     insta::assert_snapshot!(refused("name = \"x\"\n[cycle]\n\tmax_load = [0.1, -0.2]\n").replace('\t', "<tab>"), @r"

@@ -15,19 +15,19 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// True if the file is a loop: by an option for loops, or by its heading.
-pub(super) fn is_meant(asked: &ImportArguments) -> bool {
+pub(super) fn is_meant(asked: &ImportArguments, file: &Path) -> bool {
     let of = &asked.of_loop;
-    of.is_loop || of.force_column.is_some() || of.displacement_column.is_some() || is_force_curve(&asked.file)
+    of.is_loop || of.force_column.is_some() || of.displacement_column.is_some() || is_force_curve(file)
 }
 
 /// Evaluates a loop.
-pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
-    let options = options(asked)?;
-    let source = asked.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let found = measure_loop(&asked.file, &source, &options).map_err(failed)?;
-    let out = asked.out.clone().unwrap_or_else(|| named_after(&asked.file));
+pub(super) fn import(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> {
+    let options = options(asked, file)?;
+    let source = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let found = measure_loop(file, &source, &options).map_err(failed)?;
+    let out = asked.out.clone().unwrap_or_else(|| named_after(file));
     if !asked.dry_run {
-        may_be_written("the loop", &out, &asked.file, asked.force)?;
+        may_be_written("the loop", &out, file, asked.force)?;
         let steps = found.steps().map_err(failed)?;
         let keys = [
             ("measured", "true".to_owned()),
@@ -41,10 +41,13 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     if asked.json {
         say(&format!("{:#}\n", answer(&found, written)))?;
     } else {
-        say(&text(&found, &asked.file, written))?;
+        say(&text(&found, file, written))?;
     }
     Ok(0)
 }
+
+/// Radii of probes \[m\]: a number without a unit is in metres, and 20 for 20 µm is refused.
+const PROBES_M: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
 
 /// `<name of the file>_loop.parquet` in the present folder.
 fn named_after(file: &Path) -> PathBuf {
@@ -53,10 +56,10 @@ fn named_after(file: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn options(asked: &ImportArguments) -> Result<LoopOptions, Fault> {
+fn options(asked: &ImportArguments, file: &Path) -> Result<LoopOptions, Fault> {
     let of = &asked.of_loop;
     let refused = |name: &str, value: &str, help: &str| {
-        failed(format!("cannot import {}: {name} is {value}\nhelp: {help}", asked.file.display()))
+        failed(format!("cannot import {}: {name} is {value}\nhelp: {help}", file.display()))
     };
     for (name, value) in [("--modulus", of.modulus), ("--machine-stiffness", of.machine_stiffness)] {
         if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
@@ -66,7 +69,11 @@ fn options(asked: &ImportArguments) -> Result<LoopOptions, Fault> {
     let probe_radius_m = match of.probe_radius.as_deref() {
         None => None,
         Some(text) => match sizes(text).as_deref() {
-            Some([radius]) if *radius > 0.0 && radius.is_finite() => Some(*radius),
+            Some([radius]) if PROBES_M.contains(radius) => Some(*radius),
+            Some([radius]) if radius.is_finite() && *radius > 0.0 => {
+                let help = "give a length with its unit (20um), or in metres (2e-5); radii are 1 nm to 1 m";
+                return Err(refused("--probe-radius", &format!("{text:?}, read as {radius:e} m"), help));
+            }
             _ => {
                 let help = "give a length with its unit (20um), or in metres (2e-5)";
                 return Err(refused("--probe-radius", &format!("{text:?}"), help));

@@ -8,6 +8,7 @@ use crate::stats::{Limit, significant};
 use crate::store::hdf5::{Measured, SurfaceHeader};
 use crate::text::{counted, wrapped};
 use serde_json::{Value, json};
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Statistics of an imported surface.
@@ -23,6 +24,9 @@ pub(super) struct Statistics<'a> {
     pub(super) range: &'a Range<'a>,
     /// Points along a side, asperities, and further ones near the edge.
     pub(super) counts: [usize; 3],
+    /// Wavenumbers between which a self-affine spectrum was fitted \[1/m\]; nothing for a surface of this
+    /// program.
+    pub(super) fitted_1_m: Option<[f64; 2]>,
     /// The file written.
     pub(super) written: Option<&'a Path>,
 }
@@ -66,6 +70,8 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
         "shortest_wavelength_m": measured.map(|of| of.shortest_wavelength_m),
         "source_blake3": measured.map(|of| of.source_blake3.as_str()),
         "self_affine": fit,
+        "self_affine_lowest_1_m": of.fitted_1_m.map(|band| band[0]),
+        "self_affine_highest_1_m": of.fitted_1_m.map(|band| band[1]),
         "density_convention": CONVENTION,
         "texture_aspect": texture.map(|of| of.aspect()),
         "texture_slope_ratio": texture.map(|of| of.slope_ratio),
@@ -90,7 +96,7 @@ pub(super) fn text(of: &Statistics<'_>) -> String {
         preprocessing(of.header),
         roughness(of),
         texture(of.header),
-        self_affinity(of.header),
+        self_affinity(of.header, of.fitted_1_m),
     ];
     for (label, value) in lines.concat() {
         text += &wrapped(&format!("  {label:<14}{value}"), "                ");
@@ -212,7 +218,7 @@ const CONVENTION: &str =
     "integral of C(q) over d2q = h_rms^2; SurfaceTopography and contact.engineering: 4 pi^2 = 39.48 times C";
 
 /// Fit of a self-affine spectrum, and the band of wavelengths that holds data.
-fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
+fn self_affinity(header: &SurfaceHeader, fitted_1_m: Option<[f64; 2]>) -> Vec<Line> {
     let Some(fit) = header.measured.as_ref().and_then(|of| of.fit) else {
         return vec![("self-affine", "no fit".to_owned())];
     };
@@ -230,7 +236,10 @@ fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
             SpectrumEnd::WhiteNoise => format!("white noise below {at:.3e} m"),
         },
     );
-    vec![
+    let range = fitted_1_m.map(|[low, high]| {
+        ("", format!("fitted to wavelengths from {:.3e} to {:.3e} m", TAU / low, TAU / high))
+    });
+    let mut lines = vec![
         (
             "self-affine",
             format!(
@@ -242,21 +251,29 @@ fn self_affinity(header: &SurfaceHeader) -> Vec<Line> {
         ("roll-off", rolls),
         ("long cut", long),
         ("short cut", short),
-    ]
+    ];
+    lines.splice(1..1, range);
+    lines
 }
 
 /// The written file and a spec for it.
 fn spec(path: &Path, of: &Statistics<'_>) -> String {
-    let periodic = if of.header.periodic { "periodic = true\n" } else { "" };
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let stem: String = stem.chars().filter(|c| c.is_ascii_alphanumeric()).take(32).collect();
-    let file = quoted(&path.to_string_lossy());
+    let file = format!("file = {}", quoted(&path.to_string_lossy()));
     format!(
-        "Written: {}. Spec for this surface; replace the material constants:\n\n\
-         name = \"of_{stem}\"\n[surface]\nfile = {file}\n{periodic}{}[cycle]\nmax_load = [0.004]       # \
-              F/(E* A0)\n",
+        "Written: {}. Spec for this surface; replace the material constants:\n\n{}",
         path.display(),
-        of.range.spec(of.header.periodic)
+        spec_of(&format!("of_{stem}"), &file, of.header.periodic, of.range)
+    )
+}
+
+/// A spec for measured surfaces with this line of files.
+pub(super) fn spec_of(name: &str, files: &str, is_periodic: bool, range: &Range<'_>) -> String {
+    let periodic = if is_periodic { "periodic = true\n" } else { "" };
+    format!(
+        "name = \"{name}\"\n[surface]\n{files}\n{periodic}{}[cycle]\nmax_load = [0.004]       # F/(E* A0)\n",
+        range.spec(is_periodic)
     )
 }
 
@@ -273,7 +290,7 @@ pub(super) const LOW_M: f64 = 1e-10;
 
 /// Warnings: what the central square leaves out, units or values that are unlikely, and a spectrum that is
 /// not self-affine.
-fn cautions(header: &SurfaceHeader) -> Vec<String> {
+pub(super) fn cautions(header: &SurfaceHeader) -> Vec<String> {
     let mut cautions = Vec::new();
     if let Some(of) = &header.measured {
         let ([rows, columns], dropped) = (of.source_point_counts, of.dropped(header.length_m));
