@@ -120,6 +120,8 @@ const RESULTS: &[Column] = &[
          separation; null likewise",
     )
     .or_null(),
+    real("work_closing_j", "J", "Energy of closing, work_closing_j_m2 times A0; null likewise").or_null(),
+    real("work_opening_j", "J", "Energy of opening, work_opening_j_m2 times A0; null likewise").or_null(),
     real(
         "work_pull_off_j_m2",
         "J/m^2",
@@ -172,6 +174,38 @@ const RESULTS: &[Column] = &[
     )
     .or_null(),
     real(
+        "area_jkr_probe",
+        "1",
+        "Contact area A/A0 of the smooth probe at load reversal by JKR theory on a half-space; null without \
+         a probe",
+    )
+    .or_null()
+    .from("Johnson, Kendall and Roberts 1971"),
+    real(
+        "area_jkr_jump_in",
+        "1",
+        "Contact area A_in/A0 of the smooth probe after its jump into contact at zero penetration; null \
+         without a probe",
+    )
+    .or_null()
+    .from("Johnson, Kendall and Roberts 1971"),
+    real(
+        "loss_dk_probe",
+        "1",
+        "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) with R_tip = R of the probe, at the area area_jkr_probe - \
+         area_jkr_jump_in, with the moments of the continuous spectrum; null without a probe, and likewise",
+    )
+    .or_null()
+    .from("Deng and Kesari 2019"),
+    real(
+        "loss_dk_probe_realised",
+        "1",
+        "The same estimate with the moments of the realized surface; null without a probe, and where these \
+         define none",
+    )
+    .or_null()
+    .from("Deng and Kesari 2019"),
+    real(
         "loss_dk",
         "1",
         "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) at area_at_max_load, with the moments of \
@@ -207,8 +241,13 @@ const RESULTS: &[Column] = &[
     )
     .or_null()
     .from("Sanner et al. 2024"),
-    real("loss_ratio_dk", "1", "Ratio Θ/Θ_DK, loss over loss_dk; null where either is null or loss_dk is 0")
-        .or_null(),
+    real(
+        "loss_ratio_dk",
+        "1",
+        "Ratio Θ/Θ_DK, loss over loss_dk, with a probe over loss_dk_probe; null where either is null or Θ_DK \
+         is 0",
+    )
+    .or_null(),
     real("dissipated", "1", "Dissipated energy over E* A0 h_rms, summed over the events of the loop"),
     real("dissipated_j", "J", "Dissipated energy, summed over the events of the loop"),
     real(
