@@ -47,6 +47,7 @@ impl Campaign {
             ("cycles", None, Stage::Cycle, &cycles),
             ("asperities", Some("parquet"), Stage::Extract, &surfaces),
             ("estimates", Some("parquet"), Stage::Extract, &surfaces),
+            ("spectra", Some("parquet"), Stage::Extract, &surfaces),
             ("surfaces", Some("h5"), Stage::Generate, &surfaces),
         ] {
             let mut files = Vec::new();
@@ -72,9 +73,18 @@ impl Campaign {
                 }
             }
         }
-        let folders =
-            ["", "surfaces", "asperities", "estimates", "statistics", "schemas", "figures", "receipts"]
-                .map(|name| self.dir.join(name));
+        let folders = [
+            "",
+            "surfaces",
+            "asperities",
+            "estimates",
+            "spectra",
+            "statistics",
+            "schemas",
+            "figures",
+            "receipts",
+        ]
+        .map(|name| self.dir.join(name));
         let receipts = Stage::ALL.map(|stage| self.receipts_dir(stage));
         let cycles = entries(&self.dir.join("cycles")).into_iter().filter(|path| path.is_dir());
         for folder in folders.into_iter().chain(receipts).chain(cycles) {
@@ -163,7 +173,8 @@ fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found:
 fn is_picture(path: &Path) -> bool {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.rsplit_once('_'));
     let drawn = |(sweep, panel): (&str, &str)| {
-        matches!((sweep, panel), ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios"))
+        matches!((sweep, panel), ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios") | ("measured", "loops"))
+            || (sweep == "works" && panel.bytes().all(|digit| digit.is_ascii_digit()))
             || (!sweep.is_empty()
                 && panel.len() == 1
                 && panel.bytes().all(|letter| letter.is_ascii_uppercase()))

@@ -17,6 +17,7 @@ mod scans;
 mod single_cycle;
 mod theories;
 mod validity;
+mod works;
 
 pub use comparison::{Compared, comparison_page};
 pub use experiment::MeasuredLoops;
@@ -24,6 +25,7 @@ pub use failures::Failure;
 pub use live::{LiveLoop, LiveRun, LiveStage, live_page};
 pub use methods::MethodFigures;
 pub use single_cycle::SingleCycle;
+pub use works::{Works, simulated as simulated_works};
 
 use crate::figures::{Drawing, Panel};
 use crate::stats::StatsError;
@@ -68,6 +70,8 @@ pub struct Report<'a> {
     pub scans: &'a [SurfaceHeader],
     /// Measured loops, if the spec has any.
     pub measured_loops: Option<&'a MeasuredLoops>,
+    /// Works of adhesion over the cut-off wavelength.
+    pub works: Option<&'a Works>,
     /// Names of the sweeps, in order.
     pub sweeps: &'a [String],
     /// Panels, each with the name of its sweep.
@@ -109,6 +113,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
             @if !report.cycles.is_empty() { (single_cycle::section(&numbers, report.cycles)) }
             @if let Some(data) = report.explorer { (explorer(data, cases.has_spots()?)) }
             (theories::theories(&cases)?)
+            @if let Some(of) = report.works { (works::section(of, &cases, &numbers)?) }
             (validity::budget(&cases)?)
             (validity::validity(&cases)?)
             (data::methods(report.cases, &study)?)

@@ -1,6 +1,6 @@
 //! Part of the report: results with confidence intervals, and differences from the reference case.
 
-use super::cases::{Cases, name_heads};
+use super::cases::Cases;
 use super::layout::{heading, prose, wide};
 use super::numbers::{Scale, Shown, scaled, shown};
 use crate::stats::{Difference, FEW, Listed, StatsError, difference_of, singles};
@@ -78,7 +78,7 @@ fn table(cases: &Cases<'_>, name: &str, quantities: &[Quantity]) -> Result<Marku
     let scales =
         quantities.iter().map(|(_, column, _)| cases.scale(column)).collect::<Result<Vec<_>, _>>()?;
     let head = html! {
-        (name_heads())
+        (cases.name_heads())
         th { "finished of planned" }
         @for ((heading, ..), scale) in quantities.iter().zip(&scales) {
             th { (prose(heading)) (scale.head()) }
@@ -186,7 +186,7 @@ pub(super) fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     if rows.is_empty() {
         return Ok(Markup::default());
     }
-    let head = html! { (name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
+    let head = html! { (cases.name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
     Ok(html! {
         (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n"
         (wide("differences", &head, &rows))

@@ -1,6 +1,6 @@
 //! Part of the report: comparison with analytical models.
 
-use super::cases::{Cases, name_heads};
+use super::cases::Cases;
 use super::layout::{heading, prose, wide};
 use super::numbers::scaled;
 use crate::stats::{Listed, StatsError};
@@ -53,7 +53,7 @@ pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         columns.push((heading, column, cases.scale(column)?));
     }
     let head = html! {
-        (name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } }
+        (cases.name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } }
     };
     let row = |listed: &Listed| -> Result<Markup, StatsError> {
         let mut cells = Vec::new();

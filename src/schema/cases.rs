@@ -379,6 +379,11 @@ const COUNTS: &[Column] = &[
     real("loss_model_ratio", "1", "The same ratio of the dissipated energy")
         .or_null()
         .from("pipelines/validity.toml"),
+    text(
+        "load_unit",
+        "Unit of the load reversals in the spec: \"1\" (over E* A0), \"N\" or \"Pa\"",
+    )
+    .or_null(),
     text("caution", "Codes of all warnings of the row by severity, joined by +; empty without warnings"),
 ];
 

@@ -7,7 +7,7 @@ use super::error::incomplete;
 use super::measured_loop::{self, MeasuredLoop, measure_loop};
 use super::runner::{Context, Single, run_single};
 use super::surface::scale;
-use super::{StageError, Tally, datapackage};
+use super::{StageError, Tally, cutoff, datapackage};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Choice;
 use crate::schema::{CaseFacts, PARAMETERS};
@@ -81,7 +81,8 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
             &[("key", key.to_owned())],
         )?)
     };
-    let tables = [realizations, curves, avalanches, planned, methods, averaged];
+    let over_cut_offs = cutoff::table(campaign, standings)?;
+    let tables = [realizations, curves, avalanches, planned, methods, averaged, over_cut_offs];
     let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
     if let Some(loops) = measured_loops(campaign)? {
         files.push(write(&measured_loop::rows(&loops)?)?);
@@ -228,6 +229,7 @@ fn case_input(
         sweep: unit.case.sweeps.join("+"),
         parameters,
         max_loads: params.cycle.max_load.clone(),
+        load_unit: campaign.spec.load_unit(),
         precision: campaign
             .spec
             .realizations

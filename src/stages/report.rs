@@ -7,10 +7,11 @@ use super::experiment::beside;
 use super::explorer::explorer;
 use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
+use super::works::works;
 use super::{StageError, Tally};
 use crate::campaign::{Campaign, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::figures::{Drawing, Panel, Tables, file, method_ratios, panels, sensitivity, table};
-use crate::report::{self, Failure, MeasuredLoops, MethodFigures, Report, SingleCycle};
+use crate::report::{self, Failure, MeasuredLoops, MethodFigures, Report, SingleCycle, Works};
 use crate::schema;
 use crate::spec::Figures;
 use crate::store::hdf5::{SurfaceHeader, read_header};
@@ -47,6 +48,7 @@ struct Drawings {
     methods: MethodFigures,
     sensitivity: Option<Drawing>,
     measured_loops: Option<MeasuredLoops>,
+    works: Option<Works>,
 }
 
 impl Drawings {
@@ -66,6 +68,7 @@ impl Drawings {
             },
             sensitivity: sensitivity(cases, realizations)?,
             measured_loops: beside(campaign, standings, cases)?,
+            works: works(campaign, cases)?,
         })
     }
 
@@ -78,14 +81,16 @@ impl Drawings {
             .chain(&self.sensitivity)
             .map(|drawing| (drawing.stem, drawing.svg.as_str()));
         let measured = self.measured_loops.iter().map(|of| &of.panel);
-        let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle).chain(measured);
+        let works = self.works.iter().flat_map(|of| &of.panels);
+        let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle).chain(measured).chain(works);
         panels.map(drawing).chain(others).chain(self.methods.ratios.as_ref().map(drawing))
     }
 
     /// All panels with the names of their sweeps; those of the single cycle have none.
     fn all_panels(&self) -> Vec<(String, Panel)> {
         let measured = self.measured_loops.iter().map(|of| &of.panel);
-        let single = self.cycles.iter().flat_map(|cycle| &cycle.panels).chain(measured);
+        let works = self.works.iter().flat_map(|of| &of.panels);
+        let single = self.cycles.iter().flat_map(|cycle| &cycle.panels).chain(measured).chain(works);
         let cycle = single.map(|panel| (String::new(), panel.clone()));
         self.panels.iter().cloned().chain(cycle).collect()
     }
@@ -168,6 +173,7 @@ fn page(
         method_figures: &drawings.methods,
         scans: &scans(campaign)?,
         measured_loops: drawings.measured_loops.as_ref(),
+        works: drawings.works.as_ref(),
         sweeps: &sweeps(campaign),
         drawings: &drawings.panels,
         cycles: &drawings.cycles,

@@ -16,6 +16,7 @@ mod events;
 mod findings;
 mod grouped;
 mod listed;
+mod loads;
 mod methods;
 mod model_error;
 mod planned;
@@ -38,6 +39,7 @@ pub use curves::curves;
 pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};
 pub use findings::{FINDINGS, Judged, Reading, Verdict, findings};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
+pub use loads::loads;
 pub use methods::{MethodPair, method_pairs, methods, methods_summary, names_of_pairs};
 pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};
@@ -64,6 +66,8 @@ pub struct CaseInput {
     pub parameters: Given,
     /// Its load reversals, as `F/(E* A0)`.
     pub max_loads: Vec<f64>,
+    /// Unit in which the spec gives them: `1`, `N` or `Pa`.
+    pub load_unit: &'static str,
     /// A column of the table `realizations` for whose mean a precision is required, and the relative
     /// precision.
     pub precision: Option<(String, f64)>,

@@ -206,25 +206,28 @@ fn reduce(
         ("touching_share", share(count_at(&loading.touching_count), contacts).into()),
         ("covered_share", share(covered, contacts + covered).into()),
     ];
+    let forces = [pull_off, Some(max_load / load_unit)];
     let works = closing_and_opening_j(at_reversal, unloading);
-    let columns = columns.into_iter().chain(in_si(pull_off, is_resolved.then_some(loss_j), works, input));
+    let columns = columns.into_iter().chain(in_si(forces, is_resolved.then_some(loss_j), works, input));
     Ok(columns.map(|(name, value)| (name.to_owned(), value)).collect())
 }
 
-/// Results in SI units, per nominal area and over the work of adhesion, from the pull-off force \[N\], the
-/// dissipated energy and the energies of closing and opening \[J\].
+/// Results in SI units, per nominal area and over the work of adhesion, from the pull-off force and the
+/// load at the load reversal \[N\], the dissipated energy and the energies of closing and opening \[J\].
 fn in_si(
-    pull_off_n: Option<f64>,
+    [pull_off_n, max_load_n]: [Option<f64>; 2],
     loss_j: Option<f64>,
     works: Option<[f64; 2]>,
     input: &CycleInput,
-) -> [(&'static str, Value); 8] {
+) -> [(&'static str, Value); 10] {
     let area_m2 = input.surface.iter().find(|(name, _)| name == "nominal_area_m2");
     let area_m2 = area_m2.and_then(|(_, value)| value.number());
     let per_m2 = |energy_j: f64| area_m2.map(|area_m2| energy_j / area_m2);
     let works = works.filter(|_| loss_j.is_some());
     let adhesion_j = Some(input.loss_dalvi_per_area_j).filter(|adhesion_j| *adhesion_j > 0.0);
     [
+        ("max_load_n", max_load_n.into()),
+        ("max_load_pa", max_load_n.and_then(per_m2).into()),
         ("pull_off_load_n", pull_off_n.into()),
         ("pull_off_pressure_pa", pull_off_n.and_then(per_m2).into()),
         ("loss_j_m2", loss_j.and_then(per_m2).into()),
