@@ -173,8 +173,10 @@ fn unnamed(folder: &Path, extension: Option<&str>, known: &HashSet<&str>, found:
 fn is_picture(path: &Path) -> bool {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.rsplit_once('_'));
     let drawn = |(sweep, panel): (&str, &str)| {
-        matches!((sweep, panel), ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios") | ("measured", "loops"))
-            || (sweep == "works" && panel.bytes().all(|digit| digit.is_ascii_digit()))
+        matches!(
+            (sweep, panel),
+            ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios") | ("measured", "loops")
+        ) || (sweep == "works" && panel.bytes().all(|digit| digit.is_ascii_digit()))
             || (!sweep.is_empty()
                 && panel.len() == 1
                 && panel.bytes().all(|letter| letter.is_ascii_uppercase()))

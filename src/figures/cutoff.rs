@@ -37,11 +37,7 @@ const MODELS: [Line; 4] = [
 
 /// Bands of pinning: name, the two columns of their edges, and hue.
 const BANDS: [(&str, [&str; 2], [u8; 3]); 2] = [
-    (
-        "work_pinning_closing",
-        ["work_pinning_closing_low_j_m2", "work_pinning_closing_high_j_m2"],
-        RESULT,
-    ),
+    ("work_pinning_closing", ["work_pinning_closing_low_j_m2", "work_pinning_closing_high_j_m2"], RESULT),
     ("work_pinning_opening", ["work_pinning_opening_low_j_m2", "work_pinning_opening_high_j_m2"], OTHER),
 ];
 

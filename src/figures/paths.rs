@@ -58,7 +58,12 @@ pub(super) fn paths(
     }
     let mut key = key_of(&curves);
     if !beside && !notes.is_empty() {
-        key.push(entry(&format!("numbers: {}", sweep.load_symbol.replace('*', "^{*}")), NEUTRAL, None, false));
+        key.push(entry(
+            &format!("numbers: {}", sweep.load_symbol.replace('*', "^{*}")),
+            NEUTRAL,
+            None,
+            false,
+        ));
     }
     let all = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     // Numbers at the ends need room to the right of the last one.

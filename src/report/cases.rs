@@ -8,10 +8,12 @@ use crate::store::Frame;
 use maud::{Markup, html};
 
 /// Columns of energies over `E* A0 h_rms`, which share one scale in all tables.
-const ENERGIES: [&str; 8] = [
+const ENERGIES: [&str; 10] = [
     "loss",
     "loss_dk",
     "loss_dk_realised",
+    "loss_dk_probe",
+    "loss_dk_probe_realised",
     "loss_touched",
     "loss_dalvi",
     "loss_pinning",
@@ -74,6 +76,11 @@ impl<'a> Cases<'a> {
     /// The first cells of the heading of every table.
     pub(super) fn name_heads(&self) -> Markup {
         html! { th { "case" } th { (prose(self.load_symbol())) } }
+    }
+
+    /// True if a row has a probe.
+    pub(super) fn has_probe(&self) -> Result<bool, StatsError> {
+        Ok(self.frame.f64_or_null("probe_radius_m")?.iter().any(Option::is_some))
     }
 
     /// The first two cells of a row.

@@ -55,7 +55,9 @@ fn row(of: &Works, cases: &Cases<'_>, listed: &Listed) -> Result<Markup, StatsEr
     let id = cases.frame.text("case_id")?[listed.row];
     let last = ids.iter().rposition(|known| *known == id);
     let model = |column: &str| -> Result<Option<f64>, StatsError> {
-        Ok(last.and_then(|row| of.cutoff.f64_or_null(column).map(|values| values[row]).transpose()).transpose()?)
+        Ok(last
+            .and_then(|row| of.cutoff.f64_or_null(column).map(|values| values[row]).transpose())
+            .transpose()?)
     };
     let simulated = simulated(cases.frame, listed.row)?;
     let milli = |value: Option<f64>| shown(value.map(|value| 1e3 * value), Shown::Plain);
@@ -92,7 +94,6 @@ pub fn simulated(cases: &Frame, row: usize) -> Result<[Option<f64>; 2], StatsErr
         Ok(cases.f64_or_null(column)?.get(row).copied().flatten())
     };
     let is_probe = value("probe_radius_m")?.is_some();
-    let [first, second] =
-        if is_probe { ["approach", "retraction"] } else { ["closing", "opening"] };
+    let [first, second] = if is_probe { ["approach", "retraction"] } else { ["closing", "opening"] };
     Ok([value(&format!("work_{first}_j_m2_mean"))?, value(&format!("work_{second}_j_m2_mean"))?])
 }

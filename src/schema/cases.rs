@@ -206,7 +206,12 @@ const SPREADS: &[&[Column]] = &[
         "Fuller-Tabor parameter of the asperities",
         "Fuller and Tabor 1975"
     ),
-    over_realizations!("loss_ratio_dk", "1", "ratio Θ/Θ_DK, loss over loss_dk, with a probe over loss_dk_probe", ""),
+    over_realizations!(
+        "loss_ratio_dk",
+        "1",
+        "ratio Θ/Θ_DK, loss over loss_dk, with a probe over loss_dk_probe",
+        ""
+    ),
     over_realizations!(
         "dissipated",
         "1",
@@ -379,11 +384,8 @@ const COUNTS: &[Column] = &[
     real("loss_model_ratio", "1", "The same ratio of the dissipated energy")
         .or_null()
         .from("pipelines/validity.toml"),
-    text(
-        "load_unit",
-        "Unit of the load reversals in the spec: \"1\" (over E* A0), \"N\" or \"Pa\"",
-    )
-    .or_null(),
+    text("load_unit", "Unit of the load reversals in the spec: \"1\" (over E* A0), \"N\" or \"Pa\"")
+        .or_null(),
     text("caution", "Codes of all warnings of the row by severity, joined by +; empty without warnings"),
 ];
 

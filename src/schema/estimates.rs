@@ -171,17 +171,16 @@ const ENERGIES: &[Column] = &[
 
 const CYCLE: &[Column] = &[CYCLE_ID, CYCLE_CASE_ID, REALIZATION];
 
-const CYCLE_COLUMNS: [Column; CYCLE.len() + ENERGIES.len() + 16 + OF_CYCLE.len() + OF_LOAD.len()] =
-    join(&[
-        CYCLE,
-        ENERGIES,
-        &DENG_KESARI,
-        &DENG_KESARI_REALISED,
-        &DENG_KESARI_PROBE,
-        &DENG_KESARI_PROBE_REALISED,
-        OF_CYCLE,
-        OF_LOAD,
-    ]);
+const CYCLE_COLUMNS: [Column; CYCLE.len() + ENERGIES.len() + 16 + OF_CYCLE.len() + OF_LOAD.len()] = join(&[
+    CYCLE,
+    ENERGIES,
+    &DENG_KESARI,
+    &DENG_KESARI_REALISED,
+    &DENG_KESARI_PROBE,
+    &DENG_KESARI_PROBE_REALISED,
+    OF_CYCLE,
+    OF_LOAD,
+]);
 
 /// Estimates of a cycle.
 pub static ESTIMATES: Table = Table {

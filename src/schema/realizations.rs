@@ -434,12 +434,7 @@ event_kinds!(parts);
 const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
 
 const REALIZATION_COLUMNS: [Column;
-    CASE.len()
-        + PARAMETER_COLUMNS.len()
-        + RESULTS.len()
-        + OF_PROBE.len()
-        + FURTHER.len()
-        + PART_COLUMNS.len()] =
+    CASE.len() + PARAMETER_COLUMNS.len() + RESULTS.len() + OF_PROBE.len() + FURTHER.len() + PART_COLUMNS.len()] =
     join(&[CASE, &PARAMETER_COLUMNS, RESULTS, OF_PROBE, FURTHER, &PART_COLUMNS]);
 
 /// Results of single cycles.

@@ -40,11 +40,8 @@ impl Row {
 
     /// Work of a branch, closing or opening, with one of the prefactors of the band.
     fn pinning(&self, branch: usize, prefactor: usize) -> Option<f64> {
-        let works = pinning_works(
-            self.material.work_of_adhesion_j_m2,
-            self.energy_j_m2,
-            PINNING_BAND[prefactor],
-        );
+        let works =
+            pinning_works(self.material.work_of_adhesion_j_m2, self.energy_j_m2, PINNING_BAND[prefactor]);
         works.map(|works| works[branch])
     }
 }
@@ -71,10 +68,7 @@ pub(super) fn table(campaign: &Campaign, standings: &[Standing]) -> Result<Frame
         .f64("flattening_ratio", each(&Row::ratio))
         .f64("work_persson_tosatti_j_m2", each(&Row::persson_tosatti))
         .f64("work_dalvi_closing_j_m2", each(&Row::dalvi))
-        .f64(
-            "loss_dalvi_j_m2",
-            each(&|row| row.dalvi().map(|_| row.material.work_of_adhesion_j_m2)),
-        )
+        .f64("loss_dalvi_j_m2", each(&|row| row.dalvi().map(|_| row.material.work_of_adhesion_j_m2)))
         .f64("work_pinning_closing_low_j_m2", each(&|row| row.pinning(0, 1)))
         .f64("work_pinning_closing_high_j_m2", each(&|row| row.pinning(0, 0)))
         .f64("work_pinning_opening_low_j_m2", each(&|row| row.pinning(1, 0)))

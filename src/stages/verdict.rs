@@ -21,6 +21,8 @@ pub struct Verdict {
     pub method: Method,
     /// Regime; nothing for a surface that is not known yet.
     pub regime: Option<Regime>,
+    /// True if the file of a tabulated spectrum could not be read.
+    pub is_table_missing: bool,
     /// `U_el/Δγ`; nothing without adhesion.
     pub persson_tosatti: Option<f64>,
     /// `U_1/Δγ` of the shortest octave; nothing without adhesion.
@@ -83,6 +85,7 @@ fn verdict(unit: &CaseUnit, known: Option<&Known>) -> Verdict {
         method: params.method.kind(),
         regime: energies
             .map(|(energy, slope)| Regime::expected(&energy, adhesion, params.cycle.largest_load(), slope)),
+        is_table_missing: params.surface.generated().is_some_and(|surface| !surface.has_spectrum()),
         persson_tosatti: whole,
         conformity: octave,
         work_of_adhesion_j_m2: adhesion,

@@ -19,6 +19,7 @@ mod listed;
 mod loads;
 mod methods;
 mod model_error;
+mod models;
 mod planned;
 mod realizations;
 mod rows;

@@ -2,9 +2,10 @@
 
 use super::StatsError;
 use super::digits::{column_exponent, decimals, power_of_ten, significant};
-use super::loads::{FORCE, OVER_MODULUS, loads};
 use super::listed::{Listed, listing, listing_of, sweeps};
+use super::loads::{FORCE, OVER_MODULUS, loads};
 use super::model_error::{COLUMNS, outdated};
+use super::models;
 use super::verdict::{IN_A_VERDICT, verdicts};
 use super::warnings::{Warning, warnings};
 use crate::store::Frame;
@@ -185,9 +186,26 @@ fn in_si(cases: &Frame) -> Result<Vec<String>, StatsError> {
             lines.push(String::new());
             lines.extend(header.lines().map(str::to_owned));
             lines.extend(tables);
+            lines.extend(persson_tosatti(cases, |row| radii[row].is_some() == is_probe)?);
         }
     }
     Ok(lines)
+}
+
+/// Persson and Tosatti's work of adhesion of the rows that are shown, as a line; nothing where U_el ≥ Δγ.
+fn persson_tosatti(cases: &Frame, is_shown: impl Fn(usize) -> bool) -> Result<Option<String>, StatsError> {
+    let works = models::persson_tosatti(cases)?;
+    let shown: Vec<Option<f64>> =
+        (0..works.len()).filter(|row| is_shown(*row)).map(|row| works[row]).collect();
+    let known = || shown.iter().flatten().copied();
+    let [low, high] = [f64::min, f64::max]
+        .map(|pick: fn(f64, f64) -> f64| known().reduce(pick).map(|work| significant(1e3 * work, 3)));
+    let Some((low, high)) = low.zip(high) else { return Ok(None) };
+    let range = if low == high { low } else { format!("{low} to {high}") };
+    let count = known().count();
+    let rows =
+        if count == shown.len() { String::new() } else { format!(", {count} of {} rows", shown.len()) };
+    Ok(Some(format!("Persson-Tosatti, closing and opening: Δγ - U_el = {range} mJ/m²{rows}.")))
 }
 
 /// The rows of a sweep under their headings.

@@ -85,10 +85,7 @@ pub fn realised_long_waves(spectrum: &Spectrum, seed: &[u8; 32], cut_offs_m: &[f
 ///
 /// # Errors
 /// Too little memory.
-pub fn measured_long_waves(
-    map: SquareMap<'_>,
-    cut_offs_m: &[f64],
-) -> Result<Vec<LongWaves>, PhysicsError> {
+pub fn measured_long_waves(map: SquareMap<'_>, cut_offs_m: &[f64]) -> Result<Vec<LongWaves>, PhysicsError> {
     let edges: Vec<f64> = cut_offs_m.iter().map(|cut_off_m| TAU / cut_off_m * (1.0 + SAME)).collect();
     let field = Field::of(map.heights_m, map.length_m, map.edges)?;
     Ok(cumulated(cut_offs_m, &field.bands(&edges), 1.0))

@@ -22,18 +22,11 @@ impl ProbeAreas {
     ///
     /// # Errors
     /// Radius and material must be positive and finite.
-    pub fn of(
-        radius_m: f64,
-        material: &Material,
-        max_load_n: f64,
-    ) -> Result<Option<Self>, PhysicsError> {
+    pub fn of(radius_m: f64, material: &Material, max_load_n: f64) -> Result<Option<Self>, PhysicsError> {
         let sphere = Asperity::new(radius_m, material)?;
         let area = |radius: f64| PI * radius * radius;
         let radii = sphere.radius_at_load(max_load_n).zip(sphere.radius_at_penetration(0.0));
-        Ok(radii.map(|(reversal, jump_in)| Self {
-            reversal_m2: area(reversal),
-            jump_in_m2: area(jump_in),
-        }))
+        Ok(radii.map(|(reversal, jump_in)| Self { reversal_m2: area(reversal), jump_in_m2: area(jump_in) }))
     }
 
     /// Area `A_max − A_in` of the asperities that dissipate \[m²\], at least 0.
