@@ -59,6 +59,7 @@ fn law_every_public_equation_has_a_test() {
         ("spectrum", "src/physics/surface/spectrum.rs"),
         ("theory", "src/physics/theory/mod.rs"),
         ("flattening", "src/physics/theory/flattening.rs"),
+        ("cut_off", "src/physics/theory/cut_off.rs"),
         ("spot_field", "src/physics/asperities/field/spot_field.rs"),
         ("ewald", "src/physics/asperities/field/ewald.rs"),
     ];

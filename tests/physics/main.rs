@@ -9,6 +9,7 @@ mod approximate_jkr;
 mod artefacts;
 mod boundary_elements;
 mod coupled;
+mod cut_off;
 mod cycle;
 mod estimates;
 mod examples;
