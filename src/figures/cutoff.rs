@@ -35,6 +35,9 @@ const MODELS: [Line; 4] = [
     ("work_pinning_opening_low_j_m2", OTHER, Stroke::Dashed),
 ];
 
+/// Units of length below the metre, descending.
+const UNITS: [(f64, &str); 4] = [(1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"), (1e-12, "pm")];
+
 /// Bands of pinning: name, the two columns of their edges, and hue.
 const BANDS: [(&str, [&str; 2], [u8; 3]); 2] = [
     ("work_pinning_closing", ["work_pinning_closing_low_j_m2", "work_pinning_closing_high_j_m2"], RESULT),
@@ -67,8 +70,8 @@ pub fn works_over_cut_off(
         curves.push(curve(name, &of.label, line, shade(hue, 0, 1), Stroke::Solid));
     }
     let name = format!("works_{number}");
-    let x = Axis::of_decades("λ_{c} [m]", ends);
-    let y = Axis::holding("w [J/m²]", curves.iter().flat_map(Curve::heights), true).with_headroom(0.5);
+    let x = axis(ends, &mut curves);
+    let y = Axis::holding("w [J/m²]", curves.iter().flat_map(Curve::heights), false).with_headroom(0.6);
     let caption = format!(
         "Work of adhesion w against the cut-off wavelength λ_c: models for the roughness of all wavelengths \
          from λ_c up, and the simulated works of all roughness as horizontal lines, for {}. Bands: pinning, \
@@ -88,6 +91,19 @@ pub fn works_over_cut_off(
     let plot = XyPlot { stem: name.clone(), key, ..plot(String::new(), x, y, curves, &[]) };
     let svg = described(&plot_xy(&plot), &caption);
     Ok(Some(Panel { stem: name.clone(), name, caption, cases: Vec::new(), svg, plot }))
+}
+
+/// Axis of the cut-off wavelengths between two of them \[m\]: in metres over decades, or, for less than two of
+/// them, in a smaller unit over doublings, to which the curves are converted.
+fn axis([shortest, longest]: [f64; 2], curves: &mut [Curve]) -> Axis {
+    let (unit, name) = UNITS.into_iter().find(|(unit, _)| shortest >= *unit).unwrap_or((1.0, "m"));
+    if longest > 100.0 * shortest || unit == 1.0 {
+        return Axis::of_decades("λ_{c} [m]", [shortest, longest]);
+    }
+    for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
+        point.0 /= unit;
+    }
+    Axis::of_doublings(&format!("λ_{{c}} [{name}]"), [shortest / unit, longest / unit])
 }
 
 /// Bands of pinning where both edges are known.

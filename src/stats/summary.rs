@@ -28,7 +28,7 @@ const HEADER: &str = "\
 A: contact area at F_max over A0. Θ: dissipated energy over E* A0 h_rms.
 Θ_DK: estimate of Θ by Deng and Kesari";
 const OF_FLAT: &str = ".";
-const OF_TIP: &str = ", of a probe with R_tip = R and areas of JKR theory.";
+const OF_TIP: &str = ", of a probe with R_tip = R.";
 
 const REFERENCE: &str = "*: reference case. change: relative to it, where all realizations finished.";
 

@@ -61,3 +61,4 @@ mod text;
 mod validity;
 #[cfg(feature = "stats")]
 mod verdict;
+mod works;

@@ -139,11 +139,15 @@ fn pinning_works<'py>(
     elastic_energy_j_m2: Column<'py>,
     prefactor: Column<'py>,
 ) -> PyResult<[Values<'py>; 2]> {
-    each_many(py, [work_of_adhesion_j_m2, elastic_energy_j_m2, prefactor], |[adhesion, elastic, prefactor]| {
-        let adhesion = positive("the works of pinning", "the work of adhesion [J/m2]", adhesion)?;
-        let works = works::pinning_works(adhesion, elastic, prefactor);
-        Ok(works.filter(|_| elastic >= 0.0 && prefactor >= 0.0).unwrap_or([f64::NAN; 2]))
-    })
+    each_many(
+        py,
+        [work_of_adhesion_j_m2, elastic_energy_j_m2, prefactor],
+        |[adhesion, elastic, prefactor]| {
+            let adhesion = positive("the works of pinning", "the work of adhesion [J/m2]", adhesion)?;
+            let works = works::pinning_works(adhesion, elastic, prefactor);
+            Ok(works.filter(|_| elastic >= 0.0 && prefactor >= 0.0).unwrap_or([f64::NAN; 2]))
+        },
+    )
 }
 
 #[pyfunction]
