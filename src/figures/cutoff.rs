@@ -44,8 +44,8 @@ const BANDS: [(&str, [&str; 2], [u8; 3]); 2] = [
     ("work_pinning_opening", ["work_pinning_opening_low_j_m2", "work_pinning_opening_high_j_m2"], OTHER),
 ];
 
-/// Works of adhesion of one case over the cut-off wavelength, from the table `cutoff`; nothing without rows of
-/// the case. `number` distinguishes the panels of a report.
+/// Works of adhesion of one case over the cut-off wavelength, from the table `cutoff`; nothing without rows
+/// of the case. `number` distinguishes the panels of a report.
 ///
 /// # Errors
 /// If the table lacks a column.
@@ -93,8 +93,8 @@ pub fn works_over_cut_off(
     Ok(Some(Panel { stem: name.clone(), name, caption, cases: Vec::new(), svg, plot }))
 }
 
-/// Axis of the cut-off wavelengths between two of them \[m\]: in metres over decades, or, for less than two of
-/// them, in a smaller unit over doublings, to which the curves are converted.
+/// Axis of the cut-off wavelengths between two of them \[m\]: in metres over decades, or, for less than two
+/// decades, in a smaller unit over doublings, to which the curves are converted.
 fn axis([shortest, longest]: [f64; 2], curves: &mut [Curve]) -> Axis {
     let (unit, name) = UNITS.into_iter().find(|(unit, _)| shortest >= *unit).unwrap_or((1.0, "m"));
     if longest > 100.0 * shortest || unit == 1.0 {

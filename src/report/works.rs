@@ -84,8 +84,8 @@ fn row(of: &Works, cases: &Cases<'_>, listed: &Listed) -> Result<Markup, StatsEr
     })
 }
 
-/// Simulated works of adhesion of a row of the table `cases` \[J/m²\]: of closing and opening, with a probe on
-/// approach and retraction.
+/// Simulated works of adhesion of a row of the table `cases` \[J/m²\]: of closing and opening, with a probe
+/// on approach and retraction.
 ///
 /// # Errors
 /// If the table lacks a column.

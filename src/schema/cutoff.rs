@@ -74,18 +74,14 @@ pub static CUTOFF: Table = Table {
         )
         .or_null()
         .from("Dalvi et al. 2019"),
-        real(
-            "loss_dalvi_j_m2",
-            "J/m^2",
-            "Dissipated energy per contact area Θ/A = Δγ; null for U_el >= Δγ",
-        )
-        .or_null()
-        .from("Dalvi et al. 2019"),
+        real("loss_dalvi_j_m2", "J/m^2", "Dissipated energy per contact area Θ/A = Δγ; null for U_el >= Δγ")
+            .or_null()
+            .from("Dalvi et al. 2019"),
         real(
             "work_pinning_closing_low_j_m2",
             "J/m^2",
-            "Work of adhesion of closing of a pinned contact line, Δγ - k U_el with k = 3; null for k U_el >= \
-             Δγ/2",
+            "Work of adhesion of closing of a pinned contact line, Δγ - k U_el with k = 3; null for k U_el \
+             >= Δγ/2",
         )
         .or_null()
         .from("Sanner et al. 2024"),

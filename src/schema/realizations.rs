@@ -394,17 +394,12 @@ const fn is_same(a: &str, b: &str) -> bool {
 
 /// A column of the table `realizations` that another table has as well.
 pub(super) const fn shared(name: &str) -> Column {
-    let lists = [RESULTS, OF_PROBE, FURTHER];
-    let mut list = 0;
-    while list < lists.len() {
-        let mut at = 0;
-        while at < lists[list].len() {
-            if is_same(lists[list][at].name, name) {
-                return lists[list][at];
-            }
-            at += 1;
+    let mut at = 0;
+    while at < RESULT_COLUMNS.len() {
+        if is_same(RESULT_COLUMNS[at].name, name) {
+            return RESULT_COLUMNS[at];
         }
-        list += 1;
+        at += 1;
     }
     panic!("no such column");
 }
@@ -433,9 +428,12 @@ event_kinds!(parts);
 
 const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
 
+const RESULT_COLUMNS: [Column; RESULTS.len() + OF_PROBE.len() + FURTHER.len()] =
+    join(&[RESULTS, OF_PROBE, FURTHER]);
+
 const REALIZATION_COLUMNS: [Column;
-    CASE.len() + PARAMETER_COLUMNS.len() + RESULTS.len() + OF_PROBE.len() + FURTHER.len() + PART_COLUMNS.len()] =
-    join(&[CASE, &PARAMETER_COLUMNS, RESULTS, OF_PROBE, FURTHER, &PART_COLUMNS]);
+    CASE.len() + PARAMETER_COLUMNS.len() + RESULT_COLUMNS.len() + PART_COLUMNS.len()] =
+    join(&[CASE, &PARAMETER_COLUMNS, &RESULT_COLUMNS, &PART_COLUMNS]);
 
 /// Results of single cycles.
 pub static REALIZATIONS: Table = Table {

@@ -105,7 +105,7 @@ pub struct CycleInput {
     /// Θ after Deng and Kesari with the radius of the probe per unit of `A/A0` \[J\], from the moments of the
     /// continuous spectrum; nothing without a probe.
     pub loss_dk_probe_per_area_j: Option<f64>,
-    /// The same from the moments of this surface.
+    /// That estimate from the moments of this surface.
     pub loss_dk_probe_realised_per_area_j: Option<f64>,
     /// `Δγ A0` \[J\]: Θ after Dalvi and others per unit of `A/A0`.
     pub loss_dalvi_per_area_j: f64,

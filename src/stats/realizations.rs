@@ -123,9 +123,9 @@ fn audit_gap([loss_j, imbalance_j]: [f64; 2], on_loading_j: f64, work_j: f64) ->
     (compared_j > 0.0).then(|| imbalance_j / compared_j)
 }
 
-/// Deng and Kesari's Θ of a probe over the unit of energies, from the moments of the continuous spectrum and of
-/// the surface: for the contact area of the smooth probe less that after its jump into contact. Nothing without
-/// a probe.
+/// Deng and Kesari's Θ of a probe over the unit of energies, from the moments of the continuous spectrum and
+/// of the surface: for the contact area of the smooth probe less that after its jump into contact. Nothing
+/// without a probe.
 fn dk_of_probe(max_load: f64, input: &CycleInput) -> Option<[Option<f64>; 2]> {
     let given = input.at(max_load)?;
     let area = |name: &str| given.iter().find(|(known, _)| known == name)?.1.number();

@@ -64,7 +64,12 @@ fn e2e_models_over_the_cut_off() {
             assert_eq!(low.is_nan(), 3.0 * energy[k] >= 0.5 * work);
             if !low.is_nan() {
                 within("band", 0.5 * (high - low), 3.0 * energy[k], 1e-12);
-                within("band", 0.5 * (of("work_pinning_opening_low_j_m2")[k] - of("work_pinning_closing_high_j_m2")[k]), 1.2 * energy[k], 1e-12);
+                within(
+                    "band",
+                    0.5 * (of("work_pinning_opening_low_j_m2")[k] - of("work_pinning_closing_high_j_m2")[k]),
+                    1.2 * energy[k],
+                    1e-12,
+                );
             }
         }
     }

@@ -164,8 +164,8 @@ pub(crate) fn mode_bands(spectrum: &Spectrum, seed: &[u8; 32], edges_squared: &[
 
 /// Visits the modes of one half plane of wavevectors. Returns the unit of their powers.
 ///
-/// `visit` receives the squared mode number and the power of the mode and its conjugate at −k; the power times
-/// the unit is `2|c_k|²` \[m²\].
+/// `visit` receives the squared mode number and the power of the mode and its conjugate at −k; the power
+/// times the unit is `2|c_k|²` \[m²\].
 fn visit_modes(spectrum: &Spectrum, seed: &[u8; 32], mut visit: impl FnMut(u64, f64)) -> f64 {
     let reach = i64::from(spectrum.magnification) - 1;
     let density = Density::of(spectrum);

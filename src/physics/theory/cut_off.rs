@@ -1,7 +1,7 @@
 //! Roughness and energy of flattening of all wavelengths from a cut-off up.
 //!
-//! The scales of roughness cost differently: the elastic energy of full contact is `U_el = (E*/4) Σ_k k|c_k|²`
-//! over the modes `c_k` \[m\] of wavevector k \[1/m\], with the reduced modulus E* \[Pa\]. Restricted to the
+//! The scales of roughness cost differently: the elastic energy of full contact is
+//! `U_el = (E*/4) Σ_k k|c_k|²` over the modes `c_k` \[m\] of wavevector k \[1/m\], with the reduced modulus E* \[Pa\]. Restricted to the
 //! wavelengths `2π/k ≥ λc` it is the energy `U_el(λ ≥ λc)` of a contact that ignores all shorter ones.
 
 use crate::PhysicsError;
@@ -31,8 +31,8 @@ pub struct LongWaves {
 }
 
 impl LongWaves {
-    /// Elastic energy per nominal area `U_el(λ ≥ λc)` of full contact with these wavelengths \[J/m²\], with E*
-    /// \[Pa\].
+    /// Elastic energy per nominal area `U_el(λ ≥ λc)` of full contact with these wavelengths \[J/m²\], with
+    /// E* \[Pa\].
     #[must_use]
     pub fn energy_j_m2(&self, contact_modulus_pa: f64) -> f64 {
         contact_modulus_pa * self.flattening_m
