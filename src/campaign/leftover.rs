@@ -24,6 +24,10 @@ pub struct Leftover {
 const UNNAMED: &str = "no spec names it";
 const UNSHOWN: &str = "the report does not show it";
 const TORN: &str = "a killed run left it";
+/// Folders of files that are put in place.
+const FOLDERS: [&str; 9] =
+    ["", "surfaces", "asperities", "estimates", "spectra", "statistics", "schemas", "figures", "receipts"];
+
 const PAST: &str = "its cycle is done";
 
 impl Campaign {
@@ -73,18 +77,7 @@ impl Campaign {
                 }
             }
         }
-        let folders = [
-            "",
-            "surfaces",
-            "asperities",
-            "estimates",
-            "spectra",
-            "statistics",
-            "schemas",
-            "figures",
-            "receipts",
-        ]
-        .map(|name| self.dir.join(name));
+        let folders = FOLDERS.map(|name| self.dir.join(name));
         let receipts = Stage::ALL.map(|stage| self.receipts_dir(stage));
         let cycles = entries(&self.dir.join("cycles")).into_iter().filter(|path| path.is_dir());
         for folder in folders.into_iter().chain(receipts).chain(cycles) {

@@ -64,9 +64,7 @@ impl Sweep {
         if rows.is_empty() {
             return Err(unknown(name, &sweeps));
         }
-        let ids = cases.text("case_id")?;
-        let loads = loads(cases)?;
-        let max_loads = cases.f64("max_load")?;
+        let (ids, max_loads, loads) = (cases.text("case_id")?, cases.f64("max_load")?, loads(cases)?);
         let area = cases.f64_or_null("area_at_max_load_mean")?;
         let differing = varying(cases, &rows)?;
         let load_labels = loads.labels(rows.iter().copied());

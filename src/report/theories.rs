@@ -38,7 +38,7 @@ const MODELS: [&str; 8] = [
     "Θ_{DK}, Deng and Kesari (Eqs A1–A4, corrected): mean dissipated energy of one asperity times Nayak's \
      summit density and the contact area.",
     "Θ_{DK} with R_{tip} = R: the same for a probe of radius R, with the contact area of the smooth sphere \
-     by JKR theory at load reversal less that after its jump into contact. The other Θ_{DK} have R_{tip} → ∞.",
+     by JKR theory at load reversal less that after its jump into contact. Other Θ_{DK} have R_{tip} → ∞.",
     "Σθ: sum over contacting asperities without elastic interaction, with jump into contact at zero \
      penetration.",
     "Δγ A: work of adhesion times contact area, an empirical relation near full contact (Dalvi et al. 2019).",

@@ -37,7 +37,7 @@ pub(super) fn in_the_way(campaign: &Campaign, task: &Unit<'_>) -> Result<(), Sta
     match task.stage {
         Stage::Generate => files.push(file("surfaces", "h5")),
         Stage::Extract => {
-            files.extend(["asperities", "estimates", "spectra"].map(|folder| file(folder, "parquet")))
+            files.extend(["asperities", "estimates", "spectra"].map(|folder| file(folder, "parquet")));
         }
         Stage::Cycle => {
             let folder = campaign.dir.join("cycles").join(task.id);

@@ -134,6 +134,24 @@ fn dk_of_probe(max_load: f64, input: &CycleInput) -> Option<[Option<f64>; 2]> {
     Some(of.map(|of| of.map(|loss_j| loss_j * swept / input.energy_scale_j)))
 }
 
+/// Dissipated energies of models at a contact area over A0 in the unit of energies, and the ratio of that of
+/// the loop to Deng and Kesari's, of a probe with its own radius.
+fn models(area: f64, loss: Option<f64>, max_load: f64, input: &CycleInput) -> [(&'static str, Value); 7] {
+    let per_area = |loss_j: f64| loss_j * area / input.energy_scale_j;
+    let loss_dk = input.loss_dk_per_area_j.map(per_area);
+    let of_probe = dk_of_probe(max_load, input);
+    let compared = of_probe.map_or(loss_dk, |[of_target, _]| of_target).filter(|dk| *dk != 0.0);
+    [
+        ("loss_dk", loss_dk.into()),
+        ("loss_dk_realised", input.loss_dk_realised_per_area_j.map(per_area).into()),
+        ("loss_dk_probe", of_probe.and_then(|of| of[0]).into()),
+        ("loss_dk_probe_realised", of_probe.and_then(|of| of[1]).into()),
+        ("loss_pinning", input.loss_pinning_per_area_j.map(per_area).into()),
+        ("loss_dalvi", per_area(input.loss_dalvi_per_area_j).into()),
+        ("loss_ratio_dk", loss.zip(compared).map(|(loss, dk)| loss / dk).into()),
+    ]
+}
+
 fn reduce(
     loading: &Branch,
     turning: usize,
@@ -168,12 +186,8 @@ fn reduce(
     let load_unit = at(&loading.load)? / at(&loading.load_n)?;
     // Sum and union of the discs are both in m²: A0 need not be known.
     let union = union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 });
-    let per_area = |loss_j: f64| loss_j * area / input.energy_scale_j;
-    let loss_dk = input.loss_dk_per_area_j.map(per_area);
-    let of_probe = dk_of_probe(max_load, input);
-    let compared = of_probe.map_or(loss_dk, |[of_target, _]| of_target);
     let share = |part: i64, of: i64| (of > 0).then(|| part as f64 / of as f64);
-    let columns: [(&str, Value); 30] = [
+    let columns: [(&str, Value); 23] = [
         ("realization", input.realization.into()),
         ("cycle_id", input.cycle_id.as_str().into()),
         ("surface_id", input.surface_id.as_str().into()),
@@ -186,13 +200,6 @@ fn reduce(
         ("penetration_at_max_load", at(&loading.penetration)?.into()),
         ("loss", is_resolved.then_some(loss).into()),
         ("loss_j", is_resolved.then_some(loss_j).into()),
-        ("loss_dk", loss_dk.into()),
-        ("loss_dk_realised", input.loss_dk_realised_per_area_j.map(per_area).into()),
-        ("loss_dk_probe", of_probe.and_then(|of| of[0]).into()),
-        ("loss_dk_probe_realised", of_probe.and_then(|of| of[1]).into()),
-        ("loss_pinning", input.loss_pinning_per_area_j.map(per_area).into()),
-        ("loss_dalvi", per_area(input.loss_dalvi_per_area_j).into()),
-        ("loss_ratio_dk", compared.filter(|dk| *dk != 0.0 && is_resolved).map(|dk| loss / dk).into()),
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),
         ("audit_gap", audit_gap(energies, on_loading, work_j).into()),
@@ -208,7 +215,9 @@ fn reduce(
     ];
     let forces = [pull_off, Some(max_load / load_unit)];
     let works = closing_and_opening_j(at_reversal, unloading);
-    let columns = columns.into_iter().chain(in_si(forces, is_resolved.then_some(loss_j), works, input));
+    let of_models = models(area, is_resolved.then_some(loss), max_load, input);
+    let in_si = in_si(forces, is_resolved.then_some(loss_j), works, input);
+    let columns = columns.into_iter().chain(of_models).chain(in_si);
     Ok(columns.map(|(name, value)| (name.to_owned(), value)).collect())
 }
 

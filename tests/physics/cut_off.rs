@@ -91,7 +91,7 @@ fn law_long_waves_grow_and_scale() {
     let at = cut_offs(LENGTH, LENGTH / 32.0);
     let found = realised_long_waves(&spectrum, &seed, &at);
     assert!(found.windows(2).all(|pair| pair[0].flattening_m <= pair[1].flattening_m && pair[0].rms_slope <= pair[1].rms_slope));
-    let other = Spectrum { length_m: 8.0 * LENGTH, rms_height_m: 8.0 * spectrum.rms_height_m, ..spectrum.clone() };
+    let other = Spectrum { length_m: 8.0 * LENGTH, rms_height_m: 8.0 * spectrum.rms_height_m, ..spectrum };
     let scaled_at: Vec<f64> = at.iter().map(|cut_off| 8.0 * cut_off).collect();
     for (a, b) in found.iter().zip(realised_long_waves(&other, &seed, &scaled_at)) {
         let LongWaves { rms_height_m, rms_slope, flattening_m, .. } = b;
