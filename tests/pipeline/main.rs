@@ -61,4 +61,5 @@ mod text;
 mod validity;
 #[cfg(feature = "stats")]
 mod verdict;
+#[cfg(feature = "stats")]
 mod works;
