@@ -22,6 +22,12 @@ impl Campaign {
         self.dir.join("estimates").join(format!("{}.parquet", unit.id))
     }
 
+    /// `spectra/<id>.parquet`.
+    #[must_use]
+    pub fn spectra_path(&self, unit: &SurfaceUnit) -> PathBuf {
+        self.dir.join("spectra").join(format!("{}.parquet", unit.id))
+    }
+
     /// `cycles/<id>/`.
     #[must_use]
     pub fn cycle_dir(&self, unit: &CycleUnit) -> PathBuf {

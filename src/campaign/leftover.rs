@@ -24,6 +24,10 @@ pub struct Leftover {
 const UNNAMED: &str = "no spec names it";
 const UNSHOWN: &str = "the report does not show it";
 const TORN: &str = "a killed run left it";
+/// Folders of files that are put in place.
+const FOLDERS: [&str; 9] =
+    ["", "surfaces", "asperities", "estimates", "spectra", "statistics", "schemas", "figures", "receipts"];
+
 const PAST: &str = "its cycle is done";
 
 impl Campaign {
@@ -47,6 +51,7 @@ impl Campaign {
             ("cycles", None, Stage::Cycle, &cycles),
             ("asperities", Some("parquet"), Stage::Extract, &surfaces),
             ("estimates", Some("parquet"), Stage::Extract, &surfaces),
+            ("spectra", Some("parquet"), Stage::Extract, &surfaces),
             ("surfaces", Some("h5"), Stage::Generate, &surfaces),
         ] {
             let mut files = Vec::new();
@@ -72,9 +77,7 @@ impl Campaign {
                 }
             }
         }
-        let folders =
-            ["", "surfaces", "asperities", "estimates", "statistics", "schemas", "figures", "receipts"]
-                .map(|name| self.dir.join(name));
+        let folders = FOLDERS.map(|name| self.dir.join(name));
         let receipts = Stage::ALL.map(|stage| self.receipts_dir(stage));
         let cycles = entries(&self.dir.join("cycles")).into_iter().filter(|path| path.is_dir());
         for folder in folders.into_iter().chain(receipts).chain(cycles) {
@@ -164,8 +167,10 @@ fn is_picture(path: &Path) -> bool {
     let name = path.file_stem().and_then(|stem| stem.to_str());
     let stem = name.map(|stem| stem.trim_end_matches("_SI")).and_then(|stem| stem.rsplit_once('_'));
     let drawn = |(sweep, panel): (&str, &str)| {
-        matches!((sweep, panel), ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios"))
-            || (sweep, panel) == ("measured", "loops")
+        matches!(
+            (sweep, panel),
+            ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios") | ("measured", "loops")
+        ) || (sweep == "works" && panel.bytes().all(|digit| digit.is_ascii_digit()))
             || (!sweep.is_empty()
                 && panel.len() == 1
                 && panel.bytes().all(|letter| letter.is_ascii_uppercase()))

@@ -99,7 +99,7 @@ impl Campaign {
     /// The files in the folders that the program writes to, by their places below the output folder. Records
     /// of failures, checkpoints and files that are being written have no receipt.
     fn written(&self) -> Vec<String> {
-        let mut folders = ["surfaces", "asperities", "estimates", "statistics", "figures"]
+        let mut folders = ["surfaces", "asperities", "estimates", "spectra", "statistics", "figures"]
             .map(|name| self.dir.join(name))
             .to_vec();
         folders.extend(entries(&self.dir.join("cycles")).into_iter().filter(|path| path.is_dir()));
@@ -127,7 +127,9 @@ impl Campaign {
 pub(super) fn owner(file: &str) -> Option<Owner<'_>> {
     match file.split_once('/') {
         Some(("surfaces", name)) => Some((Stage::Generate, name.strip_suffix(".h5")?)),
-        Some(("asperities" | "estimates", name)) => Some((Stage::Extract, name.strip_suffix(".parquet")?)),
+        Some(("asperities" | "estimates" | "spectra", name)) => {
+            Some((Stage::Extract, name.strip_suffix(".parquet")?))
+        }
         Some(("cycles", rest)) => Some((Stage::Cycle, rest.split_once('/')?.0)),
         Some(("statistics", "panels.parquet")) | Some(("figures", _)) => Some((Stage::Report, REPORT_PAGE)),
         Some(("statistics" | "schemas", _)) => Some((Stage::Aggregate, STATISTICS)),

@@ -17,10 +17,11 @@ pub const COMPARISON: &str = "comparison";
 /// Word of the stage in the receipt of a comparison.
 pub const COMPARE: &str = "compare";
 /// Folders to which only a run writes.
-const OWN_FOLDERS: [&str; 10] = [
+const OWN_FOLDERS: [&str; 11] = [
     "surfaces",
     "asperities",
     "estimates",
+    "spectra",
     "cycles",
     "statistics",
     "schemas",

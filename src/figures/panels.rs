@@ -110,7 +110,7 @@ fn plots(
     let branch = |name, text, stroke| Measured { name, text, stroke, positive: false };
     let computed =
         |name: &'static str| Measured { name, text: "simulation", stroke: Stroke::Solid, positive: true };
-    let theories = [
+    let mut theories = vec![
         Predicted {
             name: "loss_dk",
             stroke: Stroke::Dashed,
@@ -124,6 +124,25 @@ fn plots(
             abbreviation: "DK realised",
         },
     ];
+    let radii = tables.cases.f64_or_null("probe_radius_m")?;
+    let is_probe = |member: &Member| radii.get(member.row).copied().flatten().is_some();
+    if found.members.iter().all(is_probe) {
+        // Deng and Kesari's own estimate of a probe.
+        theories = vec![
+            Predicted {
+                name: "loss_dk_probe",
+                stroke: Stroke::Dashed,
+                text: "Deng–Kesari, R_{tip} = R, target spectrum",
+                abbreviation: "DK target",
+            },
+            Predicted {
+                name: "loss_dk_probe_realised",
+                stroke: Stroke::Dotted,
+                text: "Deng–Kesari, R_{tip} = R, realised spectrum",
+                abbreviation: "DK realised",
+            },
+        ];
+    }
     let branches = [
         branch("dissipated_unloading", "unloading", Stroke::Solid),
         branch("dissipated_loading", "loading", Stroke::Dashed),

@@ -37,8 +37,7 @@ pub(super) fn paths(
         Curve { errors, band, positive: quantity == Quantity::Area, ..of_path }
     };
     let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
-    let beside = !sweep.differing.is_empty();
-    let every = sweep.members.len().div_ceil(MOST_NOTES);
+    let (beside, every) = (!sweep.differing.is_empty(), sweep.members.len().div_ceil(MOST_NOTES));
     // One loading path serves all load reversals of a case: it has the colour of the largest load.
     for member in sweep.members.iter().rev() {
         if !drawn.contains(&member.case_id) {
@@ -59,7 +58,8 @@ pub(super) fn paths(
     }
     let mut key = key_of(&curves);
     if !beside && !notes.is_empty() {
-        key.push(entry("numbers: F_{max}/(E^{*}A_{0})", NEUTRAL, None, false));
+        let symbol = sweep.load_symbol.replace('*', "^{*}");
+        key.push(entry(&format!("numbers: {symbol}"), NEUTRAL, None, false));
     }
     let all = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     // Numbers at the ends need room to the right of the last one.

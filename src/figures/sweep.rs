@@ -3,7 +3,7 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::style::case_colour;
-use crate::stats::{Values, Varying, labels, varying};
+use crate::stats::{Values, Varying, loads, varying};
 use crate::store::Frame;
 
 /// Tables from which panels are drawn.
@@ -41,6 +41,8 @@ pub(super) struct Sweep {
     pub(super) differing: Vec<Varying>,
     /// True if there are several load reversals.
     pub(super) many_loads: bool,
+    /// Symbol of the load reversal.
+    pub(super) load_symbol: &'static str,
     pub(super) axis: Axis,
 }
 
@@ -62,18 +64,18 @@ impl Sweep {
         if rows.is_empty() {
             return Err(unknown(name, &sweeps));
         }
-        let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
+        let (ids, max_loads, loads) = (cases.text("case_id")?, cases.f64("max_load")?, loads(cases)?);
         let area = cases.f64_or_null("area_at_max_load_mean")?;
         let differing = varying(cases, &rows)?;
-        let load_of = |row: usize| loads.get(row).copied().unwrap_or_default();
+        let load_labels = loads.labels(rows.iter().copied());
+        let load_of = |row: usize| loads.values.get(row).copied().unwrap_or_default();
         let many_loads = rows
             .windows(2)
             .any(|pair| pair.first().map(|row| load_of(*row)) != pair.last().map(|row| load_of(*row)));
         let words = words(&differing);
         let mut members = Vec::new();
-        let load_labels = labels(&rows.iter().map(|row| load_of(*row)).collect::<Vec<f64>>());
         for (place, row) in rows.iter().enumerate() {
-            let load = load_of(*row);
+            let max_load = max_loads.get(*row).copied().unwrap_or_default();
             let x = match differing.first().map(|first| &first.values) {
                 Some(Values::Numbers(numbers)) => numbers.get(place).copied().flatten(),
                 Some(Values::Words(all)) => all
@@ -102,7 +104,7 @@ impl Sweep {
             let (label, series, colour) = (parts.join(", "), series.join(", "), String::new());
             // Without a place, a member has curves but no point; NaN is left out of every axis.
             let x = x.unwrap_or(f64::NAN);
-            members.push(Member { row: *row, case_id, max_load: load, x, label, colour, series });
+            members.push(Member { row: *row, case_id, max_load, x, label, colour, series });
         }
         let order = |member: &Member| {
             if differing.is_empty() { member.max_load } else { member.x }
@@ -115,7 +117,7 @@ impl Sweep {
         });
         let axis = axis(&differing, words, &members);
         colour(&mut members, differing.is_empty());
-        Ok(Self { members, differing, many_loads, axis })
+        Ok(Self { members, differing, many_loads, load_symbol: loads.symbol, axis })
     }
 
     /// True if lines join the results: not between categories.
@@ -138,7 +140,13 @@ impl Sweep {
         };
         let differing = vec![Varying::named_as(["campaign", "run", "run"], Values::Words(labels.to_vec()))];
         let members: Vec<Member> = labels.iter().enumerate().map(member).collect();
-        Ok(Self { members, differing, many_loads: false, axis: Axis::of_words("run", labels.to_vec()) })
+        Ok(Self {
+            members,
+            differing,
+            many_loads: false,
+            load_symbol: "",
+            axis: Axis::of_words("run", labels.to_vec()),
+        })
     }
 }
 

@@ -3,15 +3,17 @@
 use super::layout::prose;
 use super::numbers::Scale;
 use crate::model::{Choice as _, Method};
-use crate::stats::{Listed, Listing, StatsError, labels, listing};
+use crate::stats::{Listed, Listing, StatsError, listing, loads};
 use crate::store::Frame;
 use maud::{Markup, html};
 
 /// Columns of energies over `E* A0 h_rms`, which share one scale in all tables.
-const ENERGIES: [&str; 8] = [
+const ENERGIES: [&str; 10] = [
     "loss",
     "loss_dk",
     "loss_dk_realised",
+    "loss_dk_probe",
+    "loss_dk_probe_realised",
     "loss_touched",
     "loss_dalvi",
     "loss_pinning",
@@ -19,18 +21,11 @@ const ENERGIES: [&str; 8] = [
     "dissipated",
 ];
 
-/// Normal load at load reversal, with the markup of the figures.
-pub(super) const LOAD: &str = "F_{max}/(E*A_{0})";
-
-/// The first cells of the heading of every table.
-pub(super) fn name_heads() -> Markup {
-    html! { th { "case" } th { (prose(LOAD)) } }
-}
-
 /// The rows of the table `cases`, in the order and with the labels of the report.
 pub(super) struct Cases<'a> {
     pub(super) frame: &'a Frame,
     pub(super) realizations: &'a Frame,
+    load_symbol: &'static str,
     loads: Vec<String>,
     words: Vec<&'a str>,
     listing: Listing,
@@ -38,8 +33,10 @@ pub(super) struct Cases<'a> {
 
 impl<'a> Cases<'a> {
     pub(super) fn of(frame: &'a Frame, realizations: &'a Frame) -> Result<Self, StatsError> {
-        let (loads, words) = (labels(&frame.f64("max_load")?), frame.text("caution")?);
-        Ok(Self { frame, realizations, loads, words, listing: listing(frame)? })
+        let (loads, words) = (loads(frame)?, frame.text("caution")?);
+        let load_symbol = loads.symbol;
+        let loads = loads.all_labels();
+        Ok(Self { frame, realizations, load_symbol, loads, words, listing: listing(frame)? })
     }
 
     /// The rows in the order of the tables.
@@ -69,6 +66,21 @@ impl<'a> Cases<'a> {
     /// True if a row is of the asperity model.
     pub(super) fn has_spots(&self) -> Result<bool, StatsError> {
         Ok(self.frame.text("method")?.iter().any(|method| *method == Method::Asperities.word()))
+    }
+
+    /// Symbol of the normal load at load reversal, with the markup of the figures.
+    pub(super) fn load_symbol(&self) -> &'static str {
+        self.load_symbol
+    }
+
+    /// The first cells of the heading of every table.
+    pub(super) fn name_heads(&self) -> Markup {
+        html! { th { "case" } th { (prose(self.load_symbol())) } }
+    }
+
+    /// True if a row has a probe.
+    pub(super) fn has_probe(&self) -> Result<bool, StatsError> {
+        Ok(self.frame.f64_or_null("probe_radius_m")?.iter().any(Option::is_some))
     }
 
     /// The first two cells of a row.

@@ -79,7 +79,7 @@ pub(super) fn section(
             cells.push(shown(mean(cases, listed.row, column)?, Shown::Plain));
         }
         rows.push(html! {
-            td { (listed.label) ", " (prose(super::cases::LOAD)) " = " (cases.load(listed.row)) }
+            td { (listed.label) ", " (prose(cases.load_symbol())) " = " (cases.load(listed.row)) }
             td { "simulated" } @for cell in cells { td { (cell) } }
         });
     }

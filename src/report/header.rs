@@ -4,7 +4,7 @@ use super::layout::{plain, prose};
 use crate::model::{Choice as _, Method};
 use crate::schema::{Parameter, parameters_by_rank};
 use crate::stats::{
-    LIMITS, StatsError, Values, Varying, expected_ratios, significant, verdicts_of_sweeps, warnings,
+    LIMITS, StatsError, Values, Varying, expected_ratios, loads, significant, verdicts_of_sweeps, warnings,
 };
 use crate::store::{ColumnData, Frame};
 use maud::{Markup, PreEscaped, html};
@@ -27,8 +27,8 @@ pub(super) fn facts(cases: &Frame, seed: u64, realizations: &str) -> Result<Mark
         let label = parameter.label.split_once(" [").map_or(parameter.label, |(label, _)| label);
         facts.extend(values(cases, parameter)?.map(|values| (label.replace("^{*}", "*"), values)));
     }
-    let loads = crate::stats::labels(&cases.f64("max_load")?);
-    facts.push(("F_{max}/(E*A_{0})".to_owned(), listed(loads)));
+    let loads = loads(cases)?;
+    facts.push((loads.symbol.to_owned(), listed(loads.all_labels())));
     facts.push((
         "realizations".to_owned(),
         realizations.trim_end_matches(" realizations").trim_end_matches(" realization").to_owned(),

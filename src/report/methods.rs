@@ -1,6 +1,6 @@
 //! Part of the report: both methods on the same surfaces.
 
-use super::cases::{Cases, LOAD};
+use super::cases::Cases;
 use super::layout::{Numbers, figure, grid, heading, prose, wide};
 use super::numbers::{Scale, Shown, scaled, shown};
 use crate::figures::{Drawing, Panel};
@@ -60,7 +60,7 @@ pub(super) fn side_by_side(
 fn head(scales: &[Scale]) -> Markup {
     html! {
         th { "case" }
-        th { (prose(LOAD)) }
+        th { (prose("F_{max}/(E*A_{0})")) }
         th { "surfaces" }
         @for ((heading, _), scale) in QUANTITIES.iter().zip(scales) {
             th { (prose(heading)) (scale.head()) ", asperities" }

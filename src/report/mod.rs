@@ -18,6 +18,7 @@ mod single_cycle;
 mod spectra;
 mod theories;
 mod validity;
+mod works;
 
 pub use comparison::{Compared, comparison_page};
 pub use experiment::MeasuredLoops;
@@ -26,6 +27,7 @@ pub use live::{LiveLoop, LiveRun, LiveStage, live_page};
 pub use methods::MethodFigures;
 pub use single_cycle::SingleCycle;
 pub use spectra::ScanSpectra;
+pub use works::{Works, simulated as simulated_works};
 
 use crate::figures::{Drawing, Panel};
 use crate::stats::StatsError;
@@ -74,6 +76,8 @@ pub struct Report<'a> {
     pub scan_spectra: Option<&'a ScanSpectra>,
     /// Measured loops, if the spec has any.
     pub measured_loops: Option<&'a MeasuredLoops>,
+    /// Works of adhesion over the cut-off wavelength.
+    pub works: Option<&'a Works>,
     /// Names of the sweeps, in order.
     pub sweeps: &'a [String],
     /// Panels, each with the name of its sweep.
@@ -116,6 +120,7 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
             @if !report.cycles.is_empty() { (single_cycle::section(&numbers, report.cycles)) }
             @if let Some(data) = report.explorer { (explorer(data, cases.has_spots()?)) }
             (theories::theories(&cases)?)
+            @if let Some(of) = report.works { (works::section(of, &cases, &numbers)?) }
             (validity::budget(&cases)?)
             (validity::validity(&cases)?)
             (data::methods(report.cases, &study)?)

@@ -1,6 +1,6 @@
 //! Part of the report: results with confidence intervals, and differences from the reference case.
 
-use super::cases::{Cases, name_heads};
+use super::cases::Cases;
 use super::layout::{heading, prose, wide};
 use super::numbers::{Scale, Shown, scaled, shown};
 use crate::stats::{Difference, FEW, Listed, StatsError, difference_of, singles};
@@ -63,14 +63,24 @@ pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     Ok(html! {
         (heading("Results"))
         p { (note(cases.reference())) } "\n"
-        div.dimensionless { (table(cases, "results", &RESULTS)?) }
+        div.dimensionless { (table(cases, "results", &without_units(cases)?)?) }
         p { (prose(IN_SI_NOTE)) } "\n"
         (table(cases, "results-si", &IN_SI)?)
-        @if cases.frame.f64_or_null("probe_radius_m")?.iter().any(Option::is_some) {
+        @if cases.has_probe()? {
             p { (prose(OF_PROBE_NOTE)) } "\n"
             (table(cases, "results-probe", &OF_PROBE)?)
         }
     })
+}
+
+/// Results without units: of probes alone with their own estimate of Deng and Kesari.
+fn without_units(cases: &Cases<'_>) -> Result<[Quantity; 7], StatsError> {
+    let mut quantities = RESULTS;
+    if cases.frame.f64_or_null("probe_radius_m")?.iter().all(Option::is_some) {
+        quantities[4] = ("Θ_{DK}, R_{tip} = R, target spectrum", "loss_dk_probe", true);
+        quantities[6] = ("Θ_{DK}, R_{tip} = R, realised spectrum", "loss_dk_probe_realised", true);
+    }
+    Ok(quantities)
 }
 
 /// A table of results, one row for each case and load.
@@ -78,7 +88,7 @@ fn table(cases: &Cases<'_>, name: &str, quantities: &[Quantity]) -> Result<Marku
     let scales =
         quantities.iter().map(|(_, column, _)| cases.scale(column)).collect::<Result<Vec<_>, _>>()?;
     let head = html! {
-        (name_heads())
+        (cases.name_heads())
         th { "finished of planned" }
         @for ((heading, ..), scale) in quantities.iter().zip(&scales) {
             th { (prose(heading)) (scale.head()) }
@@ -93,9 +103,9 @@ fn note(reference: Option<&str>) -> Markup {
     let text = format!(
         "Means over realizations: contact area A and mean penetration Δ at load reversal, pull-off force \
          F_{{po}} (maximum tensile load during unloading), dissipated energy Θ (area of the loop), and its \
-         estimate Θ_{{DK}} by Deng and Kesari (target spectrum). Brackets: 95 % confidence interval of the \
-         mean (Student). A lower limit below 0 of a quantity that cannot be negative is replaced by 0 and \
-         marked with †. Braces: values of the single surfaces, for fewer than {FEW}. A power of ten in a \
+         estimate Θ_{{DK}} by Deng and Kesari (target spectrum; of a probe with R_{{tip}} = R). Brackets: \
+         95 % confidence interval of the mean (Student). A lower limit below 0 of a quantity that \
+         cannot be negative is replaced by 0 and marked with †. Braces: values of the single surfaces, for fewer than {FEW}. A power of ten in a \
          column head is the unit of its numbers."
     );
     html! {
@@ -186,7 +196,7 @@ pub(super) fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     if rows.is_empty() {
         return Ok(Markup::default());
     }
-    let head = html! { (name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
+    let head = html! { (cases.name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
     Ok(html! {
         (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n"
         (wide("differences", &head, &rows))

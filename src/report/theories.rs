@@ -1,16 +1,18 @@
 //! Part of the report: comparison with analytical models.
 
-use super::cases::{Cases, name_heads};
+use super::cases::Cases;
 use super::layout::{heading, prose, wide};
 use super::numbers::scaled;
 use crate::stats::{Listed, StatsError};
 use maud::{Markup, html};
 
 /// Heading, and column of the table `cases` without its `_mean`.
-const COLUMNS: [(&str, &str); 14] = [
+const COLUMNS: [(&str, &str); 16] = [
     ("Θ, this simulation", "loss"),
     ("Θ_{DK}, target spectrum", "loss_dk"),
     ("Θ_{DK}, realised spectrum", "loss_dk_realised"),
+    ("Θ_{DK}, R_{tip} = R, target spectrum", "loss_dk_probe"),
+    ("Θ_{DK}, R_{tip} = R, realised spectrum", "loss_dk_probe_realised"),
     ("Σθ over contacting asperities", "loss_touched"),
     ("Δγ A", "loss_dalvi"),
     ("2kU_{el}A, pinning", "loss_pinning"),
@@ -27,11 +29,16 @@ const COLUMNS: [(&str, &str); 14] = [
 /// Column that the asperity model alone has.
 const OF_SPOTS: &str = "loss_touched";
 
+/// Columns that a probe alone has.
+const OF_PROBE: [&str; 2] = ["loss_dk_probe", "loss_dk_probe_realised"];
+
 const NOTE: &str = "Dissipated energies are over E*A_{0}h_{rms}, at the simulated contact area.";
 
-const MODELS: [&str; 7] = [
+const MODELS: [&str; 8] = [
     "Θ_{DK}, Deng and Kesari (Eqs A1–A4, corrected): mean dissipated energy of one asperity times Nayak's \
      summit density and the contact area.",
+    "Θ_{DK} with R_{tip} = R: the same for a probe of radius R, with the contact area of the smooth sphere \
+     by JKR theory at load reversal less that after its jump into contact. Other Θ_{DK} have R_{tip} → ∞.",
     "Σθ: sum over contacting asperities without elastic interaction, with jump into contact at zero \
      penetration.",
     "Δγ A: work of adhesion times contact area, an empirical relation near full contact (Dalvi et al. 2019).",
@@ -49,11 +56,14 @@ const MODELS: [&str; 7] = [
 pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     let mut columns = Vec::new();
     let has_spots = cases.has_spots()?;
-    for (heading, column) in COLUMNS.into_iter().filter(|(_, column)| has_spots || *column != OF_SPOTS) {
+    let has_probe = cases.has_probe()?;
+    let is_shown =
+        |column: &str| (has_spots || column != OF_SPOTS) && (has_probe || !OF_PROBE.contains(&column));
+    for (heading, column) in COLUMNS.into_iter().filter(|(_, column)| is_shown(column)) {
         columns.push((heading, column, cases.scale(column)?));
     }
     let head = html! {
-        (name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } }
+        (cases.name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } }
     };
     let row = |listed: &Listed| -> Result<Markup, StatsError> {
         let mut cells = Vec::new();
@@ -68,7 +78,10 @@ pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         p { (prose(NOTE)) } "\n"
         ul {
             "\n"
-            @for model in MODELS.iter().filter(|model| has_spots || !model.starts_with("Σθ")) {
+            @for model in MODELS.iter().filter(|model| {
+                (has_spots || !model.starts_with("Σθ"))
+                    && (has_probe || !model.starts_with("Θ_{DK} with R_{tip}"))
+            }) {
                 li { (prose(model)) } "\n"
             }
         } "\n"

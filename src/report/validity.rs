@@ -1,6 +1,6 @@
 //! Parts of the report: energy budget, model validity and warnings.
 
-use super::cases::{Cases, LOAD, name_heads};
+use super::cases::Cases;
 use super::layout::{heading, plain, prose, wide};
 use super::numbers::{Shown, scaled, shown, with_aside};
 use crate::model::{Choice as _, Method};
@@ -68,7 +68,7 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     }
     let factor = cases.scale("loss")?.head();
     let head = html! {
-        (name_heads())
+        (cases.name_heads())
         th { "Θ" (factor) }
         th { "sum over events" (factor) }
         th { "energy-balance error: maximum (mean)" (bound("audit_gap_max", Shown::Percent)) }
@@ -130,7 +130,7 @@ pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     let columns =
         || VALIDITY.into_iter().filter(move |(_, column, ..)| has_spots || !OF_SPOTS.contains(column));
     let head = html! {
-        (name_heads())
+        (cases.name_heads())
         @for (heading, column, _, format) in columns() { th { (prose(heading)) (bound(column, format)) } }
     };
     let methods = cases.frame.text("method")?;
@@ -174,7 +174,7 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                 thead {
                     tr {
                         th { "warning (code)" } th { "measured" } th { "consequence and action" }
-                        th { "cases, at " (prose(LOAD)) }
+                        th { "cases, at " (prose(cases.load_symbol())) }
                     }
                 } "\n"
                 tbody {

@@ -105,6 +105,8 @@ const SPREADS: &[&[Column]] = &[
     over_realizations!("work_closing_j_m2", "J/m^2", "work of adhesion of closing per nominal area", ""),
     over_realizations!("work_opening_j_m2", "J/m^2", "work of adhesion of opening per nominal area", ""),
     over_realizations!("loss_j", "J", "dissipated energy Θ", ""),
+    over_realizations!("work_closing_j", "J", "energy of closing", ""),
+    over_realizations!("work_opening_j", "J", "energy of opening", ""),
     over_realizations!(
         "work_pull_off_j_m2",
         "J/m^2",
@@ -135,6 +137,18 @@ const SPREADS: &[&[Column]] = &[
         "1",
         "Deng-Kesari estimate Θ_DK/(E* A0 h_rms), moments of the realized surface",
         "Eqs A1-A4"
+    ),
+    over_realizations!(
+        "loss_dk_probe",
+        "1",
+        "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) of the probe, moments of the continuous spectrum",
+        "Deng and Kesari 2019"
+    ),
+    over_realizations!(
+        "loss_dk_probe_realised",
+        "1",
+        "Deng-Kesari estimate Θ_DK/(E* A0 h_rms) of the probe, moments of the realized surface",
+        "Deng and Kesari 2019"
     ),
     over_realizations!(
         "loss_touched",
@@ -192,7 +206,12 @@ const SPREADS: &[&[Column]] = &[
         "Fuller-Tabor parameter of the asperities",
         "Fuller and Tabor 1975"
     ),
-    over_realizations!("loss_ratio_dk", "1", "ratio Θ/Θ_DK, loss over loss_dk", ""),
+    over_realizations!(
+        "loss_ratio_dk",
+        "1",
+        "ratio Θ/Θ_DK, loss over loss_dk, with a probe over loss_dk_probe",
+        ""
+    ),
     over_realizations!(
         "dissipated",
         "1",
@@ -365,6 +384,8 @@ const COUNTS: &[Column] = &[
     real("loss_model_ratio", "1", "The same ratio of the dissipated energy")
         .or_null()
         .from("pipelines/validity.toml"),
+    text("load_unit", "Unit of the load reversals in the spec: \"1\" (over E* A0), \"N\" or \"Pa\"")
+        .or_null(),
     text("caution", "Codes of all warnings of the row by severity, joined by +; empty without warnings"),
 ];
 

@@ -96,6 +96,8 @@ pub const OF_LOAD: &[Column] = &[
     shared("fit_residual_approach_n"),
     shared("fit_residual_retraction_n"),
     shared("probe_extent"),
+    shared("area_jkr_probe"),
+    shared("area_jkr_jump_in"),
 ];
 
 /// Deng–Kesari estimates by the equations in use: corrected, and with the errata a2 and a3.
@@ -132,6 +134,18 @@ pub const DENG_KESARI: [Column; 4] =
 /// Deng–Kesari estimates with the moments of the realized surface, likewise.
 pub const DENG_KESARI_REALISED: [Column; 4] =
     deng_kesari!("loss_dk_realised", "realized surface", "where Eq A2 has no integral");
+/// Deng–Kesari estimates of a probe with the moments of the continuous spectrum, likewise.
+pub const DENG_KESARI_PROBE: [Column; 4] = deng_kesari!(
+    "loss_dk_probe",
+    "continuous spectrum and R_tip = R of the probe",
+    "without a probe, for a measured surface, and where Eq A2 has no integral"
+);
+/// Deng–Kesari estimates of a probe with the moments of the realized surface, likewise.
+pub const DENG_KESARI_PROBE_REALISED: [Column; 4] = deng_kesari!(
+    "loss_dk_probe_realised",
+    "realized surface and R_tip = R of the probe",
+    "without a probe, and where Eq A2 has no integral"
+);
 
 const ENERGIES: &[Column] = &[
     real("max_load", "1", "Normal load F_max/(E* A0) at the load reversal"),
@@ -157,8 +171,16 @@ const ENERGIES: &[Column] = &[
 
 const CYCLE: &[Column] = &[CYCLE_ID, CYCLE_CASE_ID, REALIZATION];
 
-const CYCLE_COLUMNS: [Column; CYCLE.len() + ENERGIES.len() + 8 + OF_CYCLE.len() + OF_LOAD.len()] =
-    join(&[CYCLE, ENERGIES, &DENG_KESARI, &DENG_KESARI_REALISED, OF_CYCLE, OF_LOAD]);
+const CYCLE_COLUMNS: [Column; CYCLE.len() + ENERGIES.len() + 16 + OF_CYCLE.len() + OF_LOAD.len()] = join(&[
+    CYCLE,
+    ENERGIES,
+    &DENG_KESARI,
+    &DENG_KESARI_REALISED,
+    &DENG_KESARI_PROBE,
+    &DENG_KESARI_PROBE_REALISED,
+    OF_CYCLE,
+    OF_LOAD,
+]);
 
 /// Estimates of a cycle.
 pub static ESTIMATES: Table = Table {

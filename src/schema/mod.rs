@@ -7,6 +7,7 @@ mod avalanches;
 mod cases;
 mod comparison;
 mod curves;
+mod cutoff;
 mod cycles;
 mod estimates;
 mod event_kinds;
@@ -14,6 +15,7 @@ mod measured;
 mod methods;
 mod parameter;
 mod parameters;
+mod probe_results;
 mod realizations;
 mod render;
 mod run;
@@ -24,9 +26,11 @@ pub use avalanches::AVALANCHES;
 pub use cases::CASES;
 pub use comparison::COMPARISON;
 pub use curves::{CURVES, PANELS};
+pub use cutoff::{CUTOFF, SPECTRA};
 pub use cycles::CYCLES;
 pub use estimates::{
-    DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
+    DENG_KESARI, DENG_KESARI_PROBE, DENG_KESARI_PROBE_REALISED, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE,
+    OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
 };
 pub use event_kinds::{EVENT_COLOURS, EVENT_KINDS, event_kind};
 pub use measured::{MEASURED_LOOPS, MEASURED_STEPS};
@@ -144,6 +148,8 @@ pub static TABLES: &[&Table] = &[
     &SCANS,
     &SCAN_SPECTRA,
     &SPECTRUM,
+    &SPECTRA,
+    &CUTOFF,
 ];
 
 impl Column {

@@ -2,6 +2,7 @@
 
 use super::event_kinds::event_kinds;
 use super::parameters::PARAMETER_COLUMNS;
+use super::probe_results::OF_PROBE;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, join, real, text};
 
 pub(super) const CASE: &[Column] = &[
@@ -9,8 +10,11 @@ pub(super) const CASE: &[Column] = &[
     text("sweep", "Names of the sweeps that contain the case, joined by +; empty for a spec without sweeps"),
 ];
 
-pub(super) const MAX_LOAD: &[Column] =
-    &[real("max_load", "1", "Normal load F_max/(E* A0) at the load reversal")];
+pub(super) const MAX_LOAD: &[Column] = &[
+    real("max_load", "1", "Normal load F_max/(E* A0) at the load reversal"),
+    real("max_load_n", "N", "Normal load F_max at the load reversal; null where A0 is unknown").or_null(),
+    real("max_load_pa", "Pa", "Nominal pressure F_max/A0 at the load reversal").or_null(),
+];
 
 const RESULTS: &[Column] = &[
     REALIZATION,
@@ -18,6 +22,8 @@ const RESULTS: &[Column] = &[
     SURFACE_ID,
     ASPERITIES_ID,
     MAX_LOAD[0],
+    MAX_LOAD[1],
+    MAX_LOAD[2],
     real(
         "nominal_area_m2",
         "m^2",
@@ -120,57 +126,12 @@ const RESULTS: &[Column] = &[
          separation; null likewise",
     )
     .or_null(),
-    real(
-        "work_pull_off_j_m2",
-        "J/m^2",
-        "Apparent work of adhesion of the probe from its pull-off force, F_po/(1.5 π R); null without a \
-         probe or tension",
-    )
-    .or_null()
-    .from("Johnson, Kendall and Roberts 1971"),
-    real(
-        "work_loss_j_m2",
-        "J/m^2",
-        "Apparent work of adhesion of the probe from Θ, as of a smooth sphere under control of the \
-         displacement; null without a probe, and where Θ is not positive",
-    )
-    .or_null()
-    .from("Eq A1"),
-    real(
-        "work_approach_j_m2",
-        "J/m^2",
-        "Apparent work of adhesion of the probe on approach: JKR fit of the radius sqrt(A/π) against load on \
-         loading, with E* given; null without a probe, on a layer, and where the residual is above 10 % of \
-         the maximum load",
-    )
-    .or_null()
-    .from("Johnson, Kendall and Roberts 1971"),
-    real(
-        "work_retraction_j_m2",
-        "J/m^2",
-        "Apparent work of adhesion of the probe on retraction: the fit on unloading; null likewise",
-    )
-    .or_null()
-    .from("Johnson, Kendall and Roberts 1971"),
-    real(
-        "fit_residual_approach_n",
-        "N",
-        "Root-mean-square residual of the load of the JKR fit on approach; null without it",
-    )
-    .or_null(),
-    real(
-        "fit_residual_retraction_n",
-        "N",
-        "Root-mean-square residual of the load of the JKR fit on retraction; null without it",
-    )
-    .or_null(),
-    real(
-        "probe_extent",
-        "1",
-        "Largest distance of a contact edge from the apex of the probe at load reversal, over the side L: \
-         the surface is that of the sphere up to 0.3; null without a probe",
-    )
-    .or_null(),
+    real("work_closing_j", "J", "Energy of closing, work_closing_j_m2 times A0; null likewise").or_null(),
+    real("work_opening_j", "J", "Energy of opening, work_opening_j_m2 times A0; null likewise").or_null(),
+];
+
+/// Results that follow those of a probe.
+const FURTHER: &[Column] = &[
     real(
         "loss_dk",
         "1",
@@ -207,8 +168,13 @@ const RESULTS: &[Column] = &[
     )
     .or_null()
     .from("Sanner et al. 2024"),
-    real("loss_ratio_dk", "1", "Ratio Θ/Θ_DK, loss over loss_dk; null where either is null or loss_dk is 0")
-        .or_null(),
+    real(
+        "loss_ratio_dk",
+        "1",
+        "Ratio Θ/Θ_DK, loss over loss_dk, with a probe over loss_dk_probe; null where either is null or Θ_DK \
+         is 0",
+    )
+    .or_null(),
     real("dissipated", "1", "Dissipated energy over E* A0 h_rms, summed over the events of the loop"),
     real("dissipated_j", "J", "Dissipated energy, summed over the events of the loop"),
     real(
@@ -426,17 +392,21 @@ const RESULTS: &[Column] = &[
     .or_null(),
 ];
 
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut place = 0;
+    while a.len() == b.len() && place < a.len() && a[place] == b[place] {
+        place += 1;
+    }
+    place == a.len() && place == b.len()
+}
+
 /// A column of the table `realizations` that another table has as well.
 pub(super) const fn shared(name: &str) -> Column {
     let mut at = 0;
-    while at < RESULTS.len() {
-        let (known, wanted) = (RESULTS[at].name.as_bytes(), name.as_bytes());
-        let mut place = 0;
-        while known.len() == wanted.len() && place < known.len() && known[place] == wanted[place] {
-            place += 1;
-        }
-        if place == wanted.len() && known.len() == wanted.len() {
-            return RESULTS[at];
+    while at < RESULT_COLUMNS.len() {
+        if is_same(RESULT_COLUMNS[at].name, name) {
+            return RESULT_COLUMNS[at];
         }
         at += 1;
     }
@@ -467,9 +437,12 @@ event_kinds!(parts);
 
 const PART_COLUMNS: [Column; 2 * PARTS.len()] = join(PARTS);
 
+const RESULT_COLUMNS: [Column; RESULTS.len() + OF_PROBE.len() + FURTHER.len()] =
+    join(&[RESULTS, OF_PROBE, FURTHER]);
+
 const REALIZATION_COLUMNS: [Column;
-    CASE.len() + PARAMETER_COLUMNS.len() + RESULTS.len() + PART_COLUMNS.len()] =
-    join(&[CASE, &PARAMETER_COLUMNS, RESULTS, &PART_COLUMNS]);
+    CASE.len() + PARAMETER_COLUMNS.len() + RESULT_COLUMNS.len() + PART_COLUMNS.len()] =
+    join(&[CASE, &PARAMETER_COLUMNS, &RESULT_COLUMNS, &PART_COLUMNS]);
 
 /// Results of single cycles.
 pub static REALIZATIONS: Table = Table {

@@ -364,6 +364,23 @@ impl Spec {
         Some(LoopOptions { probe_radius_m, contact_modulus_pa, ..options.clone() })
     }
 
+    /// Unit in which the spec gives its load reversals: `N`, `Pa`, or `1` for loads over `E* A0`.
+    ///
+    /// A spec with sweeps in another unit than the rest has `1`.
+    #[must_use]
+    pub fn load_unit(&self) -> &'static str {
+        let units = [
+            ("N", "cycle.max_force_n", !self.base.max_force_n.is_empty()),
+            ("Pa", "cycle.max_pressure_pa", !self.base.max_pressure_pa.is_empty()),
+        ];
+        let swept = |key: &str| self.sweeps.iter().any(|sweep| sweep.axes.iter().any(|axis| axis.key == key));
+        let in_unit = |(unit, _, is_base): &(&'static str, &str, bool)| is_base.then_some(*unit);
+        let others = |of: &str| {
+            units.iter().any(|(unit, key, _)| *unit != of && swept(key)) || swept("cycle.max_load")
+        };
+        units.iter().find_map(in_unit).filter(|unit| !others(unit)).unwrap_or("1")
+    }
+
     /// Radius of the probe of the measured loops \[m\].
     fn probe_radius_m(&self) -> Option<f64> {
         self.experiment.as_ref()?.options.probe_radius_m.or(self.base.radius_m)

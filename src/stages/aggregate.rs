@@ -8,7 +8,7 @@ use super::extent::{Extent, common, own_file};
 use super::measured_loop::{self, MeasuredLoop, measure_loop};
 use super::runner::{Context, Single, run_single};
 use super::surface::scale;
-use super::{StageError, Tally, datapackage, spectra};
+use super::{StageError, Tally, cutoff, datapackage, scan_spectra};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Choice;
 use crate::spec::CaseParams;
@@ -81,17 +81,18 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
             &[("key", key.to_owned())],
         )?)
     };
-    let tables = [realizations, curves, avalanches, planned, methods, averaged];
+    let over_cut_offs = cutoff::table(campaign, standings)?;
+    let tables = [realizations, curves, avalanches, planned, methods, averaged, over_cut_offs];
     let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
     if let Some(loops) = measured_loops(campaign)? {
         files.push(write(&measured_loop::rows(&loops)?)?);
         files.push(write(&measured_loop::steps(&loops)?)?);
     }
-    let samples = spectra::samples(campaign)?;
+    let samples = scan_spectra::samples(campaign)?;
     if !samples.is_empty() {
-        files.push(write(&spectra::scans_table(&samples)?)?);
-        files.push(write(&spectra::scan_spectra_table(&samples)?)?);
-        files.push(write(&spectra::spectrum_table(&samples)?)?);
+        files.push(write(&scan_spectra::scans_table(&samples)?)?);
+        files.push(write(&scan_spectra::scan_spectra_table(&samples)?)?);
+        files.push(write(&scan_spectra::spectrum_table(&samples)?)?);
     }
     let finished: Vec<bool> = standings.iter().map(|standing| *standing == Standing::Done).collect();
     for (place, text) in datapackage::files(campaign, &finished) {
@@ -229,6 +230,7 @@ fn case_input(
         sweep: unit.case.sweeps.join("+"),
         parameters,
         max_loads: params.cycle.max_load.clone(),
+        load_unit: campaign.spec.load_unit(),
         precision: campaign
             .spec
             .realizations

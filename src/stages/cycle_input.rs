@@ -5,7 +5,8 @@ use super::cycle::Square;
 use super::extent::own_columns;
 use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
 use crate::schema::{
-    Column, DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES, OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
+    Column, DENG_KESARI, DENG_KESARI_PROBE, DENG_KESARI_PROBE_REALISED, DENG_KESARI_REALISED, ESTIMATES,
+    OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
 };
 use crate::spec::CaseParams;
 use crate::stats::{CycleInput, Given, Value};
@@ -83,6 +84,8 @@ pub(super) fn cycle_input(campaign: &Campaign, unit: &CycleUnit) -> Result<Cycle
         energy_scale_j: estimates.first_f64("energy_scale_j")?,
         loss_dk_per_area_j: deng_kesari(&DENG_KESARI)?,
         loss_dk_realised_per_area_j: deng_kesari(&DENG_KESARI_REALISED)?,
+        loss_dk_probe_per_area_j: deng_kesari(&DENG_KESARI_PROBE)?,
+        loss_dk_probe_realised_per_area_j: deng_kesari(&DENG_KESARI_PROBE_REALISED)?,
         loss_dalvi_per_area_j: estimates.first_f64("loss_dalvi_nominal_j")?,
         loss_pinning_per_area_j: estimates.f64_or_null("loss_pinning_nominal_j")?.first().copied().flatten(),
         at_max_load: loads.iter().enumerate().map(at_load).collect::<Result<_, FrameError>>()?,

@@ -84,7 +84,7 @@ impl<'a> Ids<'a> {
     fn of_table(&self, table: &Table) -> Option<&[&'a str]> {
         match table.file.split('/').next() {
             Some("cycles") => Some(&self.cycles),
-            Some("asperities" | "estimates") => Some(&self.surfaces),
+            Some("asperities" | "estimates" | "spectra") => Some(&self.surfaces),
             _ => None,
         }
     }

@@ -1,9 +1,9 @@
 //! Stage extract: asperities of a surface, and its analytical estimates.
 
-use super::StageError;
 use super::done::Outcome;
 use super::estimates::{Examined, seed, surface_table};
 use super::surface::SurfaceStage;
+use super::{StageError, spectra};
 use crate::campaign::{Campaign, Stage, SurfaceUnit, Unit};
 use crate::model::SurfaceSource;
 use crate::physics::surface::summits::Summit;
@@ -53,10 +53,12 @@ fn extract(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Outcome, StageErro
     if header.measured.is_some() {
         keys.push(("edge_count", edge_count.to_string()));
     }
+    let waves = spectra::long_waves(campaign, unit, &header, heights.view(), &estimates)?;
     let estimates = surface_table(unit, &header, &estimates, texture.as_ref())?;
     Ok(Outcome::of(vec![
         parquet::write_table(&campaign.asperities_path(unit), &frame, &keys)?,
         parquet::write_table(&campaign.estimates_path(unit), &estimates, &keys[..1])?,
+        parquet::write_table(&campaign.spectra_path(unit), &spectra::table(unit, &waves)?, &keys[..1])?,
     ]))
 }
 

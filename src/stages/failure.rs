@@ -36,7 +36,9 @@ pub(super) fn in_the_way(campaign: &Campaign, task: &Unit<'_>) -> Result<(), Sta
     let mut files = vec![campaign.receipt_path(task)];
     match task.stage {
         Stage::Generate => files.push(file("surfaces", "h5")),
-        Stage::Extract => files.extend(["asperities", "estimates"].map(|folder| file(folder, "parquet"))),
+        Stage::Extract => {
+            files.extend(["asperities", "estimates", "spectra"].map(|folder| file(folder, "parquet")));
+        }
         Stage::Cycle => {
             let folder = campaign.dir.join("cycles").join(task.id);
             if std::fs::symlink_metadata(&folder).is_ok() && !folder.is_dir() {

@@ -2,7 +2,7 @@
 
 use super::StageError;
 use super::correction::{corrected, refused};
-use super::spectra::scan_spectrum;
+use super::scan_spectra::scan_spectrum;
 use crate::formats::recognize;
 use crate::lengths::{LENGTHS, metres};
 use crate::model::MeasuredSurface;

@@ -87,7 +87,7 @@ pub fn prepare(campaign: &Campaign) -> Result<(), StageError> {
     if let Some(path) = campaign.foreign_file() {
         return Err(StageError::Foreign { path });
     }
-    let folders = ["", "surfaces", "asperities", "estimates", "cycles", "statistics", "figures"]
+    let folders = ["", "surfaces", "asperities", "estimates", "spectra", "cycles", "statistics", "figures"]
         .map(|name| campaign.dir.join(name));
     for path in folders.into_iter().chain(Stage::ALL.map(|stage| campaign.receipts_dir(stage))) {
         std::fs::create_dir_all(&path).map_err(|source| StageError::Folder { path, source })?;

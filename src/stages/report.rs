@@ -7,12 +7,13 @@ use super::experiment::beside;
 use super::explorer::explorer;
 use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
+use super::works::works;
 use super::{StageError, Tally};
 use crate::campaign::{Campaign, CaseUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Unit};
 use crate::figures::{
     Drawing, Panel, Spectra, Tables, Units, file, method_ratios, panels, sensitivity, spectra, table,
 };
-use crate::report::{self, Failure, MeasuredLoops, MethodFigures, Report, ScanSpectra, SingleCycle};
+use crate::report::{self, Failure, MeasuredLoops, MethodFigures, Report, ScanSpectra, SingleCycle, Works};
 use crate::schema;
 use crate::spec::Figures;
 use crate::store::hdf5::{SurfaceHeader, read_header};
@@ -50,6 +51,7 @@ struct Drawings {
     sensitivity: Option<Drawing>,
     measured_loops: Option<MeasuredLoops>,
     scan_spectra: Option<ScanSpectra>,
+    works: Option<Works>,
 }
 
 impl Drawings {
@@ -72,6 +74,7 @@ impl Drawings {
             sensitivity: sensitivity(cases, realizations)?,
             measured_loops: beside(campaign, standings, cases)?,
             scan_spectra: scan_spectra(campaign)?,
+            works: works(campaign, cases)?,
         })
     }
 
@@ -84,7 +87,8 @@ impl Drawings {
             .chain(&self.sensitivity)
             .map(|drawing| (drawing.stem, drawing.svg.as_str()));
         let measured = self.measured_loops.iter().map(|of| &of.panel).chain(self.spectra());
-        let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle).chain(measured);
+        let works = self.works.iter().flat_map(|of| &of.panels);
+        let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle).chain(measured).chain(works);
         panels.map(drawing).chain(others).chain(self.methods.ratios.as_ref().map(drawing))
     }
 
@@ -96,7 +100,8 @@ impl Drawings {
     /// All panels with the names of their sweeps; those of the single cycle have none.
     fn all_panels(&self) -> Vec<(String, Panel)> {
         let measured = self.measured_loops.iter().map(|of| &of.panel).chain(self.spectra());
-        let single = self.cycles.iter().flat_map(|cycle| &cycle.panels).chain(measured);
+        let works = self.works.iter().flat_map(|of| &of.panels);
+        let single = self.cycles.iter().flat_map(|cycle| &cycle.panels).chain(measured).chain(works);
         let cycle = single.map(|panel| (String::new(), panel.clone()));
         self.panels.iter().cloned().chain(cycle).collect()
     }
@@ -181,6 +186,7 @@ fn page(
         scans: &scans(campaign)?,
         measured_loops: drawings.measured_loops.as_ref(),
         scan_spectra: drawings.scan_spectra.as_ref(),
+        works: drawings.works.as_ref(),
         sweeps: &sweeps(campaign),
         drawings: &drawings.panels,
         cycles: &drawings.cycles,

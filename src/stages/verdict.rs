@@ -23,6 +23,8 @@ pub struct Verdict {
     pub length_m: Option<f64>,
     /// Regime; nothing for a surface that is not known yet.
     pub regime: Option<Regime>,
+    /// True if the file of a tabulated spectrum could not be read.
+    pub is_table_missing: bool,
     /// `U_el/Δγ`; nothing without adhesion.
     pub persson_tosatti: Option<f64>,
     /// `U_1/Δγ` of the shortest octave; nothing without adhesion.
@@ -95,6 +97,7 @@ fn verdict(unit: &CaseUnit, known: Option<&Known>) -> Verdict {
         length_m: known.map(|known| known.header.length_m).or_else(of_generated),
         regime: energies
             .map(|(energy, slope)| Regime::expected(&energy, adhesion, params.cycle.largest_load(), slope)),
+        is_table_missing: params.surface.generated().is_some_and(|surface| !surface.has_spectrum()),
         persson_tosatti: whole,
         conformity: octave,
         work_of_adhesion_j_m2: adhesion,

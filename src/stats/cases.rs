@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use super::cautions::caution;
 use super::grouped::grouped;
+use super::loads;
 use super::model_error;
 use super::realizations::identity;
 use super::rows::{Rows, Value};
@@ -140,7 +141,7 @@ impl Group {
 }
 
 fn averages(group: &Group, case: &CaseInput, max_load: f64, finished: usize) -> Given {
-    let mut row: Given = vec![("max_load".to_owned(), max_load.into())];
+    let mut row: Given = loads::columns(case, max_load);
     for column in CASES.columns {
         let Some((base, what)) = Statistic::of(column.name) else { continue };
         let pooled = POOLED.iter().find(|(name, ..)| what == Statistic::Mean && *name == base);

@@ -94,6 +94,8 @@ pub fn labels(values: &[f64]) -> Vec<String> {
 #[must_use]
 pub fn labels_with_unit(column: &str, values: &[f64]) -> Vec<String> {
     let (unit, prefixed) = match column {
+        name if name.ends_with("_m_n") => return labels(values),
+        name if name.ends_with("_n") => ("N", true),
         name if name.ends_with("_j_m2") => ("J/m²", false),
         name if name.ends_with("_pa") => ("Pa", true),
         name if name.ends_with("_m") => ("m", true),

@@ -114,7 +114,7 @@ struct List {
 impl List {
     fn of(cases: &Frame, rows: Vec<usize>) -> Result<Self, StatsError> {
         let (ids, loads, reference) =
-            (cases.text("case_id")?, cases.f64("max_load")?, reference_case(cases)?);
+            (cases.text("case_id")?, super::loads(cases)?.values, reference_case(cases)?);
         let references = rows.iter().map(|row| reference.as_deref() == Some(ids[*row])).collect();
         Ok(Self {
             differing: varying(cases, &rows)?,

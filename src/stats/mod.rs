@@ -16,8 +16,10 @@ mod events;
 mod findings;
 mod grouped;
 mod listed;
+mod loads;
 mod methods;
 mod model_error;
+mod models;
 mod planned;
 mod realizations;
 mod rows;
@@ -38,6 +40,7 @@ pub use curves::curves;
 pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};
 pub use findings::{FINDINGS, Judged, Reading, Verdict, findings};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
+pub use loads::loads;
 pub use methods::{MethodPair, method_pairs, methods, methods_summary, names_of_pairs};
 pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};
@@ -64,6 +67,8 @@ pub struct CaseInput {
     pub parameters: Given,
     /// Its load reversals, as `F/(E* A0)`.
     pub max_loads: Vec<f64>,
+    /// Unit in which the spec gives them: `1`, `N` or `Pa`.
+    pub load_unit: &'static str,
     /// A column of the table `realizations` for whose mean a precision is required, and the relative
     /// precision.
     pub precision: Option<(String, f64)>,
@@ -97,6 +102,11 @@ pub struct CycleInput {
     pub loss_dk_per_area_j: Option<f64>,
     /// Θ after Deng and Kesari per unit of `A/A0` \[J\], from the moments of this surface.
     pub loss_dk_realised_per_area_j: Option<f64>,
+    /// Θ after Deng and Kesari with the radius of the probe per unit of `A/A0` \[J\], from the moments of the
+    /// continuous spectrum; nothing without a probe.
+    pub loss_dk_probe_per_area_j: Option<f64>,
+    /// That estimate from the moments of this surface.
+    pub loss_dk_probe_realised_per_area_j: Option<f64>,
     /// `Δγ A0` \[J\]: Θ after Dalvi and others per unit of `A/A0`.
     pub loss_dalvi_per_area_j: f64,
     /// Energy dissipated by crack-front pinning over the nominal area \[J\]; nothing where that is undefined.

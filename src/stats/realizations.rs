@@ -124,6 +124,35 @@ fn audit_gap([loss_j, imbalance_j]: [f64; 2], on_loading_j: f64, work_j: f64) ->
     (compared_j > 0.0).then(|| imbalance_j / compared_j)
 }
 
+/// Deng and Kesari's Θ of a probe over the unit of energies, from the moments of the continuous spectrum and
+/// of the surface: for the contact area of the smooth probe less that after its jump into contact. Nothing
+/// without a probe.
+fn dk_of_probe(max_load: f64, input: &CycleInput) -> Option<[Option<f64>; 2]> {
+    let given = input.at(max_load)?;
+    let area = |name: &str| given.iter().find(|(known, _)| known == name)?.1.number();
+    let swept = (area("area_jkr_probe")? - area("area_jkr_jump_in")?).max(0.0);
+    let of = [input.loss_dk_probe_per_area_j, input.loss_dk_probe_realised_per_area_j];
+    Some(of.map(|of| of.map(|loss_j| loss_j * swept / input.energy_scale_j)))
+}
+
+/// Dissipated energies of models at a contact area over A0 in the unit of energies, and the ratio of that of
+/// the loop to Deng and Kesari's, of a probe with its own radius.
+fn models(area: f64, loss: Option<f64>, max_load: f64, input: &CycleInput) -> [(&'static str, Value); 7] {
+    let per_area = |loss_j: f64| loss_j * area / input.energy_scale_j;
+    let loss_dk = input.loss_dk_per_area_j.map(per_area);
+    let of_probe = dk_of_probe(max_load, input);
+    let compared = of_probe.map_or(loss_dk, |[of_target, _]| of_target).filter(|dk| *dk != 0.0);
+    [
+        ("loss_dk", loss_dk.into()),
+        ("loss_dk_realised", input.loss_dk_realised_per_area_j.map(per_area).into()),
+        ("loss_dk_probe", of_probe.and_then(|of| of[0]).into()),
+        ("loss_dk_probe_realised", of_probe.and_then(|of| of[1]).into()),
+        ("loss_pinning", input.loss_pinning_per_area_j.map(per_area).into()),
+        ("loss_dalvi", per_area(input.loss_dalvi_per_area_j).into()),
+        ("loss_ratio_dk", loss.zip(compared).map(|(loss, dk)| loss / dk).into()),
+    ]
+}
+
 fn reduce(
     loading: &Branch,
     turning: usize,
@@ -158,10 +187,8 @@ fn reduce(
     let load_unit = at(&loading.load)? / at(&loading.load_n)?;
     // Sum and union of the discs are both in m²: A0 need not be known.
     let union = union.map(|union| if discs > 0.0 { union * area / discs } else { 0.0 });
-    let per_area = |loss_j: f64| loss_j * area / input.energy_scale_j;
-    let loss_dk = input.loss_dk_per_area_j.map(per_area);
     let share = |part: i64, of: i64| (of > 0).then(|| part as f64 / of as f64);
-    let columns: [(&str, Value); 28] = [
+    let columns: [(&str, Value); 23] = [
         ("realization", input.realization.into()),
         ("cycle_id", input.cycle_id.as_str().into()),
         ("surface_id", input.surface_id.as_str().into()),
@@ -174,11 +201,6 @@ fn reduce(
         ("penetration_at_max_load", at(&loading.penetration)?.into()),
         ("loss", is_resolved.then_some(loss).into()),
         ("loss_j", is_resolved.then_some(loss_j).into()),
-        ("loss_dk", loss_dk.into()),
-        ("loss_dk_realised", input.loss_dk_realised_per_area_j.map(per_area).into()),
-        ("loss_pinning", input.loss_pinning_per_area_j.map(per_area).into()),
-        ("loss_dalvi", per_area(input.loss_dalvi_per_area_j).into()),
-        ("loss_ratio_dk", loss_dk.filter(|dk| *dk != 0.0 && is_resolved).map(|dk| loss / dk).into()),
         ("dissipated", (dissipated_j / input.energy_scale_j).into()),
         ("dissipated_j", dissipated_j.into()),
         ("audit_gap", audit_gap(energies, on_loading, work_j).into()),
@@ -192,29 +214,36 @@ fn reduce(
         ("touching_share", share(count_at(&loading.touching_count), contacts).into()),
         ("covered_share", share(covered, contacts + covered).into()),
     ];
+    let forces = [pull_off, Some(max_load / load_unit)];
     let works = closing_and_opening_j(at_reversal, unloading);
-    let columns = columns.into_iter().chain(in_si(pull_off, is_resolved.then_some(loss_j), works, input));
+    let of_models = models(area, is_resolved.then_some(loss), max_load, input);
+    let in_si = in_si(forces, is_resolved.then_some(loss_j), works, input);
+    let columns = columns.into_iter().chain(of_models).chain(in_si);
     Ok(columns.map(|(name, value)| (name.to_owned(), value)).collect())
 }
 
-/// Results in SI units, per nominal area and over the work of adhesion, from the pull-off force \[N\], the
-/// dissipated energy and the energies of closing and opening \[J\].
+/// Results in SI units, per nominal area and over the work of adhesion, from the pull-off force and the
+/// load at the load reversal \[N\], the dissipated energy and the energies of closing and opening \[J\].
 fn in_si(
-    pull_off_n: Option<f64>,
+    [pull_off_n, max_load_n]: [Option<f64>; 2],
     loss_j: Option<f64>,
     works: Option<[f64; 2]>,
     input: &CycleInput,
-) -> [(&'static str, Value); 6] {
+) -> [(&'static str, Value); 10] {
     let area_m2 = input.surface.iter().find(|(name, _)| name == "nominal_area_m2");
     let area_m2 = area_m2.and_then(|(_, value)| value.number());
     let per_m2 = |energy_j: f64| area_m2.map(|area_m2| energy_j / area_m2);
     let works = works.filter(|_| loss_j.is_some());
     let adhesion_j = Some(input.loss_dalvi_per_area_j).filter(|adhesion_j| *adhesion_j > 0.0);
     [
+        ("max_load_n", max_load_n.into()),
+        ("max_load_pa", max_load_n.and_then(per_m2).into()),
         ("pull_off_load_n", pull_off_n.into()),
         ("pull_off_pressure_pa", pull_off_n.and_then(per_m2).into()),
         ("loss_j_m2", loss_j.and_then(per_m2).into()),
         ("loss_over_adhesion", loss_j.zip(adhesion_j).map(|(loss, adhesion)| loss / adhesion).into()),
+        ("work_closing_j", works.map(|works| works[0]).into()),
+        ("work_opening_j", works.map(|works| works[1]).into()),
         ("work_closing_j_m2", works.and_then(|works| per_m2(works[0])).into()),
         ("work_opening_j_m2", works.and_then(|works| per_m2(works[1])).into()),
     ]

@@ -1,9 +1,11 @@
 //! The table of results at the end of a run.
 
 use super::StatsError;
-use super::digits::{column_exponent, decimals, labels, power_of_ten, significant};
+use super::digits::{column_exponent, decimals, power_of_ten, significant};
 use super::listed::{Listed, listing, listing_of, sweeps};
+use super::loads::{FORCE, OVER_MODULUS, loads};
 use super::model_error::{COLUMNS, outdated};
+use super::models;
 use super::verdict::{IN_A_VERDICT, verdicts};
 use super::warnings::{Warning, warnings};
 use crate::store::Frame;
@@ -18,11 +20,15 @@ const LINE: usize = 79;
 /// Rows that a warning names; of more, it gives the number.
 const MOST_NAMED: usize = 2;
 
+const MEANS: &str = "Mean ± standard deviation over realizations; n: finished/planned.";
+const LOADS: &str = "F_max: maximum load, F_po: pull-off force, both over E* A0.";
+const LOADS_IN_SI: &str = "F_max: maximum load, F_po: pull-off force over E* A0.";
+const PRESSURES: &str = "F_max: maximum nominal pressure, F_po: pull-off force over E* A0.";
 const HEADER: &str = "\
-Mean ± standard deviation over realizations; n: finished/planned.
-F_max: maximum load, F_po: pull-off force, both over E* A0.
 A: contact area at F_max over A0. Θ: dissipated energy over E* A0 h_rms.
-Θ_DK: estimate of Θ by Deng and Kesari.";
+Θ_DK: estimate of Θ by Deng and Kesari";
+const OF_FLAT: &str = ".";
+const OF_TIP: &str = ", of a probe with R_tip = R.";
 
 const REFERENCE: &str = "*: reference case. change: relative to it, where all realizations finished.";
 
@@ -134,14 +140,29 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
         );
     }
     lines.extend(in_si(cases)?);
-    let mut head = vec![HEADER];
-    head.extend(compared.then_some(REFERENCE));
+    let mut head = vec![MEANS.to_owned(), loads_head(cases)?.to_owned(), results_head(cases)?];
+    head.extend(compared.then(|| REFERENCE.to_owned()));
     lines.extend(match shown {
         Shown::Few => few_warnings(cases)?,
         Shown::All => warning_lines(cases)?,
     });
     lines.push(String::new());
     Ok(format!("{}\n{}", head.join("\n"), lines.join("\n")))
+}
+
+/// Meaning of the loads.
+fn loads_head(cases: &Frame) -> Result<&'static str, StatsError> {
+    Ok(match loads(cases)?.symbol {
+        OVER_MODULUS => LOADS,
+        FORCE => LOADS_IN_SI,
+        _ => PRESSURES,
+    })
+}
+
+/// Meaning of the results without units.
+fn results_head(cases: &Frame) -> Result<String, StatsError> {
+    let has_probe = cases.f64_or_null("probe_radius_m")?.iter().any(Option::is_some);
+    Ok(format!("{HEADER}{}", if has_probe { OF_TIP } else { OF_FLAT }))
 }
 
 /// The results of all sweeps in SI units: per nominal area, and of probes.
@@ -165,9 +186,26 @@ fn in_si(cases: &Frame) -> Result<Vec<String>, StatsError> {
             lines.push(String::new());
             lines.extend(header.lines().map(str::to_owned));
             lines.extend(tables);
+            lines.extend(persson_tosatti(cases, |row| radii[row].is_some() == is_probe)?);
         }
     }
     Ok(lines)
+}
+
+/// Persson and Tosatti's work of adhesion of the rows that are shown, as a line; nothing where U_el ≥ Δγ.
+fn persson_tosatti(cases: &Frame, is_shown: impl Fn(usize) -> bool) -> Result<Option<String>, StatsError> {
+    let works = models::persson_tosatti(cases)?;
+    let shown: Vec<Option<f64>> =
+        (0..works.len()).filter(|row| is_shown(*row)).map(|row| works[row]).collect();
+    let known = || shown.iter().flatten().copied();
+    let [low, high] = [f64::min, f64::max]
+        .map(|pick: fn(f64, f64) -> f64| known().reduce(pick).map(|work| significant(1e3 * work, 3)));
+    let Some((low, high)) = low.zip(high) else { return Ok(None) };
+    let range = if low == high { low } else { format!("{low} to {high}") };
+    let count = known().count();
+    let rows =
+        if count == shown.len() { String::new() } else { format!(", {count} of {} rows", shown.len()) };
+    Ok(Some(format!("Persson-Tosatti, closing and opening: Δγ - U_el = {range} mJ/m²{rows}.")))
 }
 
 /// The rows of a sweep under their headings.
@@ -224,7 +262,7 @@ fn case_lines(
     let counts = |row: usize| -> Result<[i64; 2], StatsError> {
         Ok([count("done_count", row)?, count("planned_count", row)?])
     };
-    let load = value(cases, "max_load", listed.row)?.map_or_else(String::new, |load| significant(load, 4));
+    let load = short_load(cases, listed.row)?;
     let [done, planned] = counts(listed.row)?;
     // Means of different surfaces differ by the surfaces too.
     let reference = match listed.reference {
@@ -246,6 +284,15 @@ fn case_lines(
         lines.extend(labelled("  change [%]", [String::new(), String::new()], four(cells)));
     }
     Ok(lines)
+}
+
+/// A load reversal with four digits, or with its unit.
+fn short_load(cases: &Frame, row: usize) -> Result<String, StatsError> {
+    let loads = loads(cases)?;
+    if loads.symbol == OVER_MODULUS {
+        return Ok(loads.values.get(row).map_or_else(String::new, |load| significant(*load, 4)));
+    }
+    Ok(loads.all_labels().get(row).cloned().unwrap_or_default())
 }
 
 fn four(cells: Vec<String>) -> [String; 4] {
@@ -331,7 +378,7 @@ pub fn warning_text(cases: &Frame) -> Result<String, StatsError> {
 
 /// One paragraph per warning, with its rows.
 fn warning_lines(cases: &Frame) -> Result<Vec<String>, StatsError> {
-    let (all, loads) = (listing(cases)?.rows, labels(&cases.f64("max_load")?));
+    let (all, loads) = (listing(cases)?.rows, loads(cases)?.all_labels());
     let mut lines = Vec::new();
     for warning in warnings(cases)? {
         let place = if warning.rows.len() == all.len() {

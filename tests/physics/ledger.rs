@@ -60,6 +60,7 @@ fn law_every_public_equation_has_a_test() {
         ("theory", "src/physics/theory/mod.rs"),
         ("flattening", "src/physics/theory/flattening.rs"),
         ("common_spectrum", "src/physics/surface/common_spectrum.rs"),
+        ("cut_off", "src/physics/theory/cut_off.rs"),
         ("spot_field", "src/physics/asperities/field/spot_field.rs"),
         ("ewald", "src/physics/asperities/field/ewald.rs"),
     ];

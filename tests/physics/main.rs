@@ -10,6 +10,7 @@ mod artefacts;
 mod boundary_elements;
 mod common_spectrum;
 mod coupled;
+mod cut_off;
 mod cycle;
 mod estimates;
 mod examples;

@@ -46,6 +46,8 @@ mod schema;
 #[cfg(feature = "stats")]
 mod several;
 #[cfg(feature = "stats")]
+mod sinusoid;
+#[cfg(feature = "stats")]
 mod snapshots;
 mod spec;
 #[cfg(feature = "stats")]
@@ -63,4 +65,5 @@ mod text;
 mod validity;
 #[cfg(feature = "stats")]
 mod verdict;
+#[cfg(feature = "stats")]
 mod works;

@@ -32,10 +32,9 @@ fn e2e_every_figure_is_there_in_the_formats_of_the_build() {
     let stems: BTreeSet<String> =
         fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned()).collect();
     let closer = ["avalanches", "events", "loads", "loop", "map", "radii", "spectrum", "summits"].map(|name| format!("closer_{name}"));
-    let wanted: BTreeSet<String> = closer
-        .into_iter()
-        .chain(["A", "B", "C", "D", "E"].into_iter().flat_map(|panel| [format!("zeta_{panel}"), format!("zeta_{panel}_SI")]))
-        .collect();
+    let panels = ["A", "B", "C", "D", "E"].into_iter().flat_map(|panel| [format!("zeta_{panel}"), format!("zeta_{panel}_SI")]);
+    let wanted = closer.into_iter().chain(panels);
+    let wanted: BTreeSet<String> = wanted.chain(["works_1", "works_2"].map(str::to_owned)).collect();
     assert_eq!(stems, wanted);
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
     for stem in &stems {

@@ -202,6 +202,8 @@ fn e2e_a_table_makes_surfaces_of_its_spectrum() {
     fs::rename(&file, bench.folder.path().join("kept.csv")).unwrap();
     assert_eq!(campaign(&resolved), key);
     assert!(stdout(&bench.look("status", &[])).contains("Nothing is left to do."));
+    let plan = hysteron(&bench, &["plan", resolved.to_str().unwrap(), "--out", bench.out().to_str().unwrap()]);
+    assert!(flat(&stdout(&plan)).contains("the file of `surface.spectrum` is not there or changed"), "{}", stdout(&plan));
     fs::remove_dir_all(bench.out().join("statistics")).unwrap();
     let again = hysteron(&bench, &["run", resolved.to_str().unwrap(), "--out", bench.out().to_str().unwrap()]);
     assert_eq!(code(&again), 0, "{}", stderr(&again));

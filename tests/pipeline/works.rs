@@ -1,80 +1,124 @@
-//! Works of adhesion of closing and of opening, against an exact loop.
+//! Works of adhesion of models over the cut-off wavelength, Deng and Kesari's loss of a probe, and loads in the unit of the spec.
 
-use std::f64::consts::{PI, TAU};
-use std::fmt::Write;
+use hysteron::model::{Material, Slips};
+use hysteron::physics::surface::spectrum::Moments;
+use hysteron::physics::theory::probe_loss::{ProbeAreas, deng_kesari_probe_loss};
+use hysteron::schema::{CASES, CUTOFF, REALIZATIONS, SPECTRA, Table};
+use hysteron::store::Frame;
+use hysteron::store::parquet::read_table;
 use std::fs;
 
-use hysteron::schema::REALIZATIONS;
-use hysteron::store::parquet::read_table;
+use crate::bench::{Bench, code, stderr, stdout};
 
-use crate::bench::{Bench, code, stderr};
+/// Two cases with U_el/Δγ of 0.9, so that pinning is defined for the longest wavelengths alone.
+const FLAT: &str = "name = \"flat\"
+seed = 3
+realizations = 2
+[material]
+work_of_adhesion_j_m2 = 0.07
+[cycle]
+max_pressure_pa = [1000.0, 2000.0]
+approach_step = 0.05
+[[sweep]]
+name = \"zeta\"
+surface.magnification = [6, 8]
+";
 
-/// Points along a side.
-const POINTS: usize = 64;
-/// Side of the square, which is the wavelength, amplitude of the height, and E\*.
-const LENGTH: f64 = 1e-4;
-const HEIGHT: f64 = 2e-6;
-const MODULUS: f64 = 1e6;
-
-/// Work of adhesion of Johnson's number `α = sqrt(2Δγλ/(π²E*h²))` \[J/m²\].
-fn work_of_adhesion(alpha: f64) -> f64 {
-    0.5 * (alpha * PI * HEIGHT).powi(2) * MODULUS / LENGTH
+fn table(bench: &Bench, table: &'static Table) -> Frame {
+    read_table(&bench.out().join(table.file), table).unwrap()
 }
 
-/// Works of closing and of opening \[J/m²\] by quadrature of Johnson's branch (Int. J. Solids Structures 32, 423, 1995): `P = sin²πa − α sqrt(tan πa)` in
-/// `πE*h/λ` and the mean gap `ḡ = cos²πa + 2P ln sin πa` in h. Surfaces touch at ḡ = 1, jump onto the branch, and leave it where ḡ turns.
-fn exact(alpha: f64) -> [f64; 2] {
-    let state = |k: u32| {
-        let a = PI * (0.002 + 0.49 * f64::from(k) / 1e5);
-        let load = a.sin().powi(2) - alpha * a.tan().sqrt();
-        [load, a.cos().powi(2) + 2.0 * load * a.sin().ln()]
-    };
-    let branch: Vec<[f64; 2]> = (0..100_000).map(state).collect();
-    let off = (0..branch.len()).max_by(|a, b| branch[*a][1].total_cmp(&branch[*b][1])).unwrap();
-    let (mut closing, mut opening) = (0.0, 0.0);
-    for pair in branch[off..].windows(2).take_while(|pair| pair[1][0] < 0.0) {
-        let work = -0.5 * (pair[0][0] + pair[1][0]) * (pair[0][1] - pair[1][1]);
-        opening += work;
-        closing += if pair[0][1] <= 1.0 { work } else { 0.0 };
-    }
-    [closing, opening].map(|work| work * PI * MODULUS * HEIGHT * HEIGHT / LENGTH)
+fn column(frame: &Frame, name: &str) -> Vec<f64> {
+    frame.f64_or_null(name).unwrap().iter().map(|value| value.unwrap_or(f64::NAN)).collect()
 }
 
-/// A sinusoid of one wavelength from a file: opening to 1.5 %, and closing to the same energy, which is up to 3 % of it. The grid of 64 points has Θ to 1 %
-/// (`val_loops_of_johnson`). Ridges are no asperities: their columns are null.
+fn within(what: &str, got: f64, want: f64, relative: f64) {
+    assert!((got - want).abs() <= relative * want.abs(), "{what}: {got:e}, {want:e}");
+}
+
 #[test]
-fn val_works_of_a_sinusoid() {
-    let mut scan = String::new();
-    for row in 0..POINTS {
-        let height = 1e9 * HEIGHT * (TAU * row as f64 / POINTS as f64).cos();
-        writeln!(scan, "{}", vec![height.to_string(); POINTS].join(" ")).unwrap();
+fn e2e_models_over_the_cut_off() {
+    let bench = Bench::new(FLAT);
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let (cutoff, cases) = (table(&bench, &CUTOFF), table(&bench, &CASES));
+    let ids = cutoff.text("case_id").unwrap();
+    let of = |name: &str| column(&cutoff, name);
+    let (energy, below, ratio) = (of("flattening_j_m2"), of("flattening_below_j_m2"), of("flattening_ratio"));
+    for (row, id) in cases.text("case_id").unwrap().iter().enumerate() {
+        let own: Vec<usize> = (0..ids.len()).filter(|k| ids[*k] == *id).collect();
+        let (first, last) = (own[0], own[own.len() - 1]);
+        // The last row has all roughness: the ratio of the table `cases`, a sum over the modes in another order.
+        within("all roughness", ratio[last], column(&cases, "persson_tosatti_realised_mean")[row], 1e-12);
+        assert_eq!(below[last], 0.0);
+        within("both parts", energy[first] + below[first], energy[last], 1e-12);
+        assert_eq!(of("cut_off_m")[first], 1e-3);
+        within("shortest", of("cut_off_m")[last], 1e-3 / column(&cases, "magnification")[row], 1e-12);
+        assert!(own.iter().all(|k| cutoff.i64("surface_count").unwrap()[*k] == 2));
+        for k in own {
+            let (work, h) = (0.07, of("rms_slope")[k]);
+            within("Persson-Tosatti", of("work_persson_tosatti_j_m2")[k], work * (1.0 + 0.5 * h * h) - energy[k], 1e-12);
+            within("Dalvi", of("work_dalvi_closing_j_m2")[k], work - energy[k], 1e-12);
+            // Null where k U_el >= Δγ/2.
+            let (low, high) = (of("work_pinning_closing_low_j_m2")[k], of("work_pinning_opening_high_j_m2")[k]);
+            assert_eq!(low.is_nan(), 3.0 * energy[k] >= 0.5 * work);
+            if !low.is_nan() {
+                within("band", 0.5 * (high - low), 3.0 * energy[k], 1e-12);
+                within(
+                    "band",
+                    0.5 * (of("work_pinning_opening_low_j_m2")[k] - of("work_pinning_closing_high_j_m2")[k]),
+                    1.2 * energy[k],
+                    1e-12,
+                );
+            }
+        }
     }
-    let alphas = [0.2, 0.3, 0.4];
-    let bench = Bench::new("");
-    let file = bench.folder.path().join("sinusoid.txt");
-    fs::write(&file, scan).unwrap();
-    let spec = format!(
-        "name = \"sinusoid\"\n[surface]\nfile = {:?}\npixel_m = {}\nunit = \"nm\"\nperiodic = true\n[material]\ncontact_modulus_pa = {MODULUS}\n\
-         [model]\nmethod = \"boundary_elements\"\n[boundary_elements]\npoints = {POINTS}\n[cycle]\nmax_load = [0.00314]\napproach_step = 0.005\n\
-         [[sweep]]\nname = \"johnson\"\nmaterial.work_of_adhesion_j_m2 = {:?}\n",
-        file.to_str().unwrap(),
-        LENGTH / POINTS as f64,
-        alphas.map(work_of_adhesion)
-    );
-    fs::write(bench.spec(), spec).unwrap();
+    // Fixed amplitudes: the surfaces of a case have one spectrum.
+    assert!(of("flattening_sd_j_m2").iter().all(|sd| *sd < 1e-15));
+    let files: Vec<_> = fs::read_dir(bench.out().join("spectra")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert_eq!(files.len(), 4);
+    let spectra = read_table(&files[0], &SPECTRA).unwrap();
+    let heights = column(&spectra, "rms_height_m");
+    within("rms height", heights[heights.len() - 1], 5e-6, 1e-12);
+    let report = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    assert!(report.contains("Works of adhesion and the models") && bench.out().join("figures/works_2.svg").is_file());
+    // Loads are in pascals, as in the spec.
+    let text = stdout(&run);
+    assert!(text.contains("maximum nominal pressure") && text.contains(" 1 kPa") && text.contains(" 2 kPa"), "{text}");
+    assert!(text.contains("Persson-Tosatti, closing and opening: Δγ - U_el = "), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80 || line.contains('/')), "{text}");
+    assert!(report.contains("F<sub>max</sub>/A<sub>0</sub>"));
+    for (pressure, force) in column(&cases, "max_load_pa").iter().zip(column(&cases, "max_load_n")) {
+        within("force", force, pressure * 1e-6, 1e-12);
+    }
+    assert!(cases.text("load_unit").unwrap().iter().all(|unit| *unit == "Pa"));
+}
+
+#[test]
+fn e2e_deng_and_kesari_of_a_probe() {
+    let spec = "name = \"sphere\"\nrealizations = 1\n[surface]\nlength_m = 4e-5\nrms_height_m = 1e-7\nmagnification = 8\n\
+                [material]\nwork_of_adhesion_j_m2 = 0.03\n[probe]\nradius_m = 2e-5\n[cycle]\nmax_force_n = [2e-6]\n";
+    let bench = Bench::new(spec);
     let run = bench.verb("run", &["--until", "aggregate"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
-    let table = read_table(&bench.out().join("statistics/realizations.parquet"), &REALIZATIONS).unwrap();
-    let of = |name: &str| table.f64_or_null(name).unwrap();
-    let (works, closing, opening) = (of("work_of_adhesion_j_m2"), of("work_closing_j_m2"), of("work_opening_j_m2"));
-    assert_eq!(works.len(), alphas.len());
-    for alpha in alphas {
-        let row = works.iter().position(|work| (work.unwrap() / work_of_adhesion(alpha) - 1.0).abs() < 1e-9).unwrap();
-        let ([close, open], found) = (exact(alpha), [closing[row].unwrap(), opening[row].unwrap()]);
-        assert!((found[1] - open).abs() < 0.015 * open, "opening {} and exactly {open} at α = {alpha}", found[1]);
-        assert!((found[0] - close).abs() < 0.015 * open, "closing {} and exactly {close} at α = {alpha}", found[0]);
-        let loss = of("loss_j_m2")[row].unwrap();
-        assert!((found[1] - found[0] - loss).abs() < 1e-9 * loss);
-    }
-    assert!(of("tabor_min").iter().chain(of("low_tabor_share")).all(Option::is_none));
+    let frame = table(&bench, &REALIZATIONS);
+    let of = |name: &str| column(&frame, name)[0];
+    within("newtons", of("max_load_n"), 2e-6, 1e-12);
+    within("pascals", of("max_load_pa"), 2e-6 / 1.6e-9, 1e-12);
+    // A_in = π (2π R² Δγ/E*)^(2/3) of the sphere, over A0.
+    let jump_in = std::f64::consts::PI * (std::f64::consts::TAU * 4e-10 * 0.03 / 1e6_f64).powf(2.0 / 3.0) / 1.6e-9;
+    within("A_in", of("area_jkr_jump_in"), jump_in, 1e-11);
+    let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.03, ..Material::default() };
+    let moments = Moments::of_rms(1e-7, of("rms_slope"), of("rms_curvature_1_m"));
+    let areas = ProbeAreas::of(2e-5, &material, 2e-6).unwrap().unwrap();
+    within("A_max", of("area_jkr_probe"), areas.reversal_m2 / 1.6e-9, 1e-11);
+    let loss_j = deng_kesari_probe_loss(&moments, &material, 2e-5, Slips::NONE).unwrap() * areas.swept_m2();
+    within("loss", of("loss_dk_probe_realised"), loss_j / (1e6 * 1.6e-9 * 1e-7), 1e-9);
+    within("ratio", of("loss_ratio_dk"), of("loss") / of("loss_dk_probe"), 1e-12);
+    // The tip makes asperities sharper: less than the estimate of flat surfaces for the same area.
+    assert!(of("loss_dk_probe") < of("loss_dk") * (of("area_jkr_probe") - of("area_jkr_jump_in")) / of("area_at_max_load"));
+    within("joules", of("work_opening_j") - of("work_closing_j"), of("loss_j"), 1e-9);
+    within("joules", of("work_closing_j"), of("work_closing_j_m2") * 1.6e-9, 1e-12);
+    let text = stdout(&run);
+    assert!(text.contains(" 2 µN ") && text.contains("R_tip = R"), "{text}");
 }

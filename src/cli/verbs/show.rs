@@ -17,7 +17,9 @@ use indicatif::HumanBytes;
 use serde_json::{Map, Value, json};
 
 /// Results in the printed text; JSON has all columns.
-const RESULTS: [&str; 20] = [
+const RESULTS: [&str; 24] = [
+    "max_load_n",
+    "max_load_pa",
     "pull_off_load",
     "pull_off_load_n",
     "pull_off_pressure_pa",
@@ -36,6 +38,8 @@ const RESULTS: [&str; 20] = [
     "work_retraction_j_m2",
     "work_pull_off_j_m2",
     "work_loss_j_m2",
+    "loss_dk_probe",
+    "area_jkr_jump_in",
     "loss_ratio_dk",
     "audit_gap",
 ];

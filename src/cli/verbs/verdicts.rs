@@ -50,7 +50,7 @@ pub(super) fn range(values: impl Iterator<Item = f64> + Clone, digits: usize) ->
 fn regimes(verdicts: &[Verdict]) -> String {
     let mut groups: BTreeMap<_, Vec<&Verdict>> = BTreeMap::new();
     for of in verdicts.iter().filter(|of| of.regime.is_some() || of.error.is_none()) {
-        groups.entry((of.regime, of.method)).or_default().push(of);
+        groups.entry((of.regime, of.is_table_missing, of.method)).or_default().push(of);
     }
     groups
         .values()
@@ -63,6 +63,9 @@ fn regime(group: &[&Verdict], all: usize) -> String {
     let cases = if group.len() == all { String::new() } else { format!(" ({} of {all} cases)", group.len()) };
     let [first, ..] = group else { return String::new() };
     let Some(regime) = first.regime else {
+        if first.is_table_missing {
+            return format!("unknown{cases}: the file of `surface.spectrum` is not there or changed");
+        }
         return format!(
             "known after the stage extract{cases}: the scan is too large to be read for the plan"
         );

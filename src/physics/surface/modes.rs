@@ -118,6 +118,25 @@ impl Field {
         self.sum(&[0.0; N], add, |total, sum| total.iter_mut().zip(sum).for_each(|(t, s)| *t += s))
     }
 
+    /// Sums `Σ|c|²`, `Σ q|c|²` and `Σ q²|c|²` over bands of wavenumbers \[1/m\] without the mean.
+    ///
+    /// The upper edges of the bands ascend and are included; the first band begins at 0.
+    pub(crate) fn bands(&self, edges_1_m: &[f64]) -> Vec<[f64; 3]> {
+        let add = |bands: &mut Vec<[f64; 3]>, squared: f64, times: f64, power: f64| {
+            let q = self.lowest * squared.sqrt();
+            let place = edges_1_m.partition_point(|edge| *edge < q);
+            if let Some(band) = bands.get_mut(place).filter(|_| q > 0.0) {
+                let weights = [1.0, q, q * q];
+                band.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += times * power * weight);
+            }
+        };
+        self.sum(&vec![[0.0; 3]; edges_1_m.len()], add, |total, sum| {
+            for (to, from) in total.iter_mut().zip(sum) {
+                to.iter_mut().zip(from).for_each(|(t, s)| *t += s);
+            }
+        })
+    }
+
     /// Moments without the mean: `m0 = Σ|c|²`, `m2 = ½ Σ q²|c|²`, `m4 = ⅜ Σ q⁴|c|²`.
     pub(crate) fn moments(&self) -> Moments {
         let [m0, slope, laplacian] = self.weighted(|q| [if q > 0.0 { 1.0 } else { 0.0 }, q * q, q.powi(4)]);

@@ -137,23 +137,48 @@ pub fn mode_sums<const N: usize>(
     seed: &[u8; 32],
     weights: impl Fn(u64) -> [f64; N],
 ) -> [f64; N] {
+    let mut totals = [0.0; N];
+    let unit = visit_modes(spectrum, seed, |mode_squared, power| {
+        for (total, weight) in totals.iter_mut().zip(weights(mode_squared)) {
+            *total += power * weight;
+        }
+    });
+    totals.map(|total| total * unit)
+}
+
+/// Sums `Σ|c|²`, `Σ k|c|²` and `Σ k²|c|²` \[m²\] over the modes of [`synthesize`] in bands of mode numbers.
+///
+/// The squared upper edges of the bands ascend and are included; the first band begins at 0.
+#[must_use]
+pub(crate) fn mode_bands(spectrum: &Spectrum, seed: &[u8; 32], edges_squared: &[f64]) -> Vec<[f64; 3]> {
+    let mut bands = vec![[0.0; 3]; edges_squared.len()];
+    let unit = visit_modes(spectrum, seed, |mode_squared, power| {
+        let squared = mode_squared as f64;
+        if let Some(band) = bands.get_mut(edges_squared.partition_point(|edge| *edge < squared)) {
+            let weights = [1.0, squared.sqrt(), squared];
+            band.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += power * weight);
+        }
+    });
+    bands.iter().map(|sums| sums.map(|sum| sum * unit)).collect()
+}
+
+/// Visits the modes of one half plane of wavevectors. Returns the unit of their powers.
+///
+/// `visit` receives the squared mode number and the power of the mode and its conjugate at −k; the power
+/// times the unit is `2|c_k|²` \[m²\].
+fn visit_modes(spectrum: &Spectrum, seed: &[u8; 32], mut visit: impl FnMut(u64, f64)) -> f64 {
     let reach = i64::from(spectrum.magnification) - 1;
     let density = Density::of(spectrum);
     let mut moments = MomentSums::default();
-    let mut totals = [0.0; N];
     for kx in -reach..=reach {
         let mut phases = Phases::of_row(seed, kx);
         for ky in u64::from(kx <= 0)..=reach.unsigned_abs() {
             let (_, mode_squared, power) = mode(&density, spectrum.amplitudes, &mut phases, (kx, ky));
-            // The mode and its conjugate at −k.
             moments.add(mode_squared, 2.0 * power);
-            for (total, weight) in totals.iter_mut().zip(weights(mode_squared)) {
-                *total += 2.0 * power * weight;
-            }
+            visit(mode_squared, 2.0 * power);
         }
     }
-    let unit = (spectrum.lowest_wavenumber() * moments.scale(spectrum)).powi(2);
-    totals.map(|total| total * unit)
+    (spectrum.lowest_wavenumber() * moments.scale(spectrum)).powi(2)
 }
 
 /// Modes by columns of fixed ky, kx running fastest in transform order, and the sums of their powers.

@@ -21,6 +21,7 @@
 //! | Tabor parameter of the asperities | [`Asperity::tabor`] | Eq 3 |
 //! | Fuller–Tabor parameter | [`fuller_tabor`] | Fuller and Tabor 1975 |
 //! | dissipated energy at `A = A0`, target and realised \[J\] | [`deng_kesari_loss_as_printed`] | Eqs A1–A4 |
+//! | the same with the radius of a probe \[J\] | [`DengKesari::of_probe`] | Deng and Kesari 2019 |
 //! | dissipated energy at `A = A0` of separation \[J\] | [`dalvi_loss`] | Dalvi et al. 2019 |
 //! | dissipated energy at `A = A0` of pinning \[J\] | [`pinning_loss`] | Sanner et al. 2024 |
 //! | dissipated energy of isolated asperities \[J\] | [`Asperity::loop_loss`] | Eq A1 |
@@ -30,6 +31,7 @@
 
 use super::approximate_jkr::{CurveLoop, CurvePoint, adhesive_curve, curve_loop};
 use super::flattening::{Flattening, RelativeFlattening, flattening, shortest_wavelength};
+use super::probe_loss::deng_kesari_probe_loss;
 use super::{
     adhesionless_area, adhesionless_area_small, curvature_decay, dalvi_loss, deng_kesari_loss_as_printed,
     fuller_tabor, pinning_loss, sticky_line,
@@ -220,10 +222,31 @@ impl DengKesari {
     ];
 
     fn of(moments: &Moments, material: &Material, area_m2: f64) -> Result<Self, PhysicsError> {
+        Self::each(moments, |slips| deng_kesari_loss_as_printed(moments, material, area_m2, slips))
+    }
+
+    /// With the radius of a probe \[m\] as that of the tip, at `A = area_m2` \[m²\].
+    ///
+    /// # Errors
+    /// As [`deng_kesari_probe_loss`].
+    pub fn of_probe(
+        moments: &Moments,
+        material: &Material,
+        area_m2: f64,
+        radius_m: f64,
+    ) -> Result<Self, PhysicsError> {
+        let per_area = |slips| deng_kesari_probe_loss(moments, material, radius_m, slips);
+        Self::each(moments, |slips| Ok(area_m2 * per_area(slips)?))
+    }
+
+    fn each(
+        moments: &Moments,
+        loss_j: impl Fn(Slips) -> Result<f64, PhysicsError>,
+    ) -> Result<Self, PhysicsError> {
         let mut nominal_j = [None; 4];
         for (value, slips) in nominal_j.iter_mut().zip(Self::ERRATA) {
             if curvature_decay(moments.nayak_parameter(), slips).is_some() {
-                *value = Some(deng_kesari_loss_as_printed(moments, material, area_m2, slips)?);
+                *value = Some(loss_j(slips)?);
             }
         }
         Ok(Self { nominal_j })

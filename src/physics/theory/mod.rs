@@ -8,10 +8,13 @@
 //! [`flattening`].
 
 pub mod approximate_jkr;
+pub mod cut_off;
 pub mod estimates;
 pub mod flattening;
 pub mod probe;
+pub mod probe_loss;
 pub mod regime;
+pub mod works;
 
 use crate::PhysicsError;
 use crate::constants::Constant;
@@ -21,8 +24,16 @@ use crate::surface::spectrum::Moments;
 use std::f64::consts::PI;
 
 /// Constants of the analytical models.
-pub(super) const CONSTANTS: &[Constant] =
-    &[Constant::new("pinning of a contact edge, `k`", &[PINNING], "", "Prefactor of `loss_pinning`.", "")];
+pub(super) const CONSTANTS: &[Constant] = &[
+    Constant::new("pinning of a contact edge, `k`", &[PINNING], "", "Prefactor of `loss_pinning`.", ""),
+    Constant::new(
+        "band of `k`",
+        &works::PINNING_BAND,
+        "",
+        "Prefactors of the works of adhesion of pinning in the table `cutoff`.",
+        "",
+    ),
+];
 
 /// Nayak's density of the reduced summit curvature in the limit used by Deng and Kesari. Eq A2.
 ///

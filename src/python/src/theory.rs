@@ -1,10 +1,13 @@
 //! Analytical models: the functions of `hysteron_physics::theory`, by name.
 
-use crate::columns::{Column, Values, each, positive, within};
+use crate::columns::{Column, Values, each, each_many, positive, within};
 use hysteron_physics::PhysicsError;
 use hysteron_physics::model::{Material, Slips};
 use hysteron_physics::surface::spectrum::Moments;
-use hysteron_physics::theory;
+use hysteron_physics::theory::probe_loss::{
+    ProbeAreas, deng_kesari_probe_loss as deng_kesari_probe_loss_per_area,
+};
+use hysteron_physics::theory::{self, regime, works};
 use pyo3::prelude::*;
 
 /// The material of one element, for `action`.
@@ -97,6 +100,84 @@ fn deng_kesari_loss<'py>(
     })
 }
 
+/// Θ with the contact areas of the smooth probe at its load reversal and after its jump into contact.
+#[pyfunction]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "three moments, two constants of the material, a radius, a load and two slips"
+)]
+fn deng_kesari_probe_loss<'py>(
+    py: Python<'py>,
+    m0_m2: Column<'py>,
+    m2: Column<'py>,
+    m4_1_m2: Column<'py>,
+    contact_modulus_pa: Column<'py>,
+    work_of_adhesion_j_m2: Column<'py>,
+    radius_m: Column<'py>,
+    max_load_n: Column<'py>,
+    a2: bool,
+    a3: bool,
+) -> PyResult<[Values<'py>; 3]> {
+    let slips = Slips { a2, a3, ..Slips::NONE };
+    let columns = [m0_m2, m2, m4_1_m2, contact_modulus_pa, work_of_adhesion_j_m2, radius_m, max_load_n];
+    each_many(py, columns, |[m0_m2, m2, m4_1_m2, modulus, adhesion, radius, load]| {
+        let m2 = positive(MEAN_LOSS, "m2", m2)?;
+        let material = material(MEAN_LOSS, modulus, adhesion)?;
+        let moments = Moments { m0_m2, m2, m4_1_m2 };
+        let per_area = deng_kesari_probe_loss_per_area(&moments, &material, radius, slips)?;
+        let areas = ProbeAreas::of(radius, &material, load)?;
+        Ok(areas.map_or([f64::NAN; 3], |areas| {
+            [per_area * areas.swept_m2(), areas.reversal_m2, areas.jump_in_m2]
+        }))
+    })
+}
+
+#[pyfunction]
+fn pinning_works<'py>(
+    py: Python<'py>,
+    work_of_adhesion_j_m2: Column<'py>,
+    elastic_energy_j_m2: Column<'py>,
+    prefactor: Column<'py>,
+) -> PyResult<[Values<'py>; 2]> {
+    each_many(
+        py,
+        [work_of_adhesion_j_m2, elastic_energy_j_m2, prefactor],
+        |[adhesion, elastic, prefactor]| {
+            let adhesion = positive("the works of pinning", "the work of adhesion [J/m2]", adhesion)?;
+            let works = works::pinning_works(adhesion, elastic, prefactor);
+            Ok(works.filter(|_| elastic >= 0.0 && prefactor >= 0.0).unwrap_or([f64::NAN; 2]))
+        },
+    )
+}
+
+#[pyfunction]
+fn dalvi_closing<'py>(
+    py: Python<'py>,
+    work_of_adhesion_j_m2: Column<'py>,
+    elastic_energy_j_m2: Column<'py>,
+) -> PyResult<Values<'py>> {
+    each(py, [work_of_adhesion_j_m2, elastic_energy_j_m2], |[adhesion, elastic]| {
+        let adhesion = positive("Dalvi's work of closing", "the work of adhesion [J/m2]", adhesion)?;
+        Ok(within(elastic >= 0.0, works::dalvi_closing(adhesion, elastic).unwrap_or(f64::NAN)))
+    })
+}
+
+#[pyfunction]
+fn effective_adhesion<'py>(
+    py: Python<'py>,
+    work_of_adhesion_j_m2: Column<'py>,
+    rms_slope: Column<'py>,
+    elastic_energy_j_m2: Column<'py>,
+) -> PyResult<Values<'py>> {
+    each(py, [work_of_adhesion_j_m2, rms_slope, elastic_energy_j_m2], |[adhesion, slope, elastic]| {
+        let adhesion = positive("the effective work of adhesion", "the work of adhesion [J/m2]", adhesion)?;
+        Ok(within(
+            slope >= 0.0 && elastic >= 0.0,
+            regime::effective_adhesion(adhesion, slope, elastic).unwrap_or(f64::NAN),
+        ))
+    })
+}
+
 #[pyfunction]
 fn dalvi_loss<'py>(
     py: Python<'py>,
@@ -184,6 +265,10 @@ pub fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(curvature_density_as_printed, module)?)?;
     module.add_function(wrap_pyfunction!(mean_loop_loss, module)?)?;
     module.add_function(wrap_pyfunction!(deng_kesari_loss, module)?)?;
+    module.add_function(wrap_pyfunction!(deng_kesari_probe_loss, module)?)?;
+    module.add_function(wrap_pyfunction!(pinning_works, module)?)?;
+    module.add_function(wrap_pyfunction!(dalvi_closing, module)?)?;
+    module.add_function(wrap_pyfunction!(effective_adhesion, module)?)?;
     module.add_function(wrap_pyfunction!(dalvi_loss, module)?)?;
     module.add_function(wrap_pyfunction!(pinning_loss, module)?)?;
     module.add_function(wrap_pyfunction!(sticky_line, module)?)?;

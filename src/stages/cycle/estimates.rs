@@ -4,13 +4,13 @@ use super::super::StageError;
 use super::super::estimates::{finite, ratio_columns, read_surface_estimates, target};
 use super::super::identity::Identity;
 use super::super::surface::scale;
-use super::apparent;
 use super::{Computed, CycleTask};
+use super::{apparent, deng_kesari};
 use crate::physics::EventKind;
 use crate::physics::cycle::soundness::LoopEnergy;
 use crate::physics::cycle::{Branch, Cycle, Event};
 use crate::physics::theory::estimates::{CycleEstimates, LoadEstimates, Tabor};
-use crate::schema::{DENG_KESARI, DENG_KESARI_REALISED, ESTIMATES};
+use crate::schema::ESTIMATES;
 use crate::store::Frame;
 use std::iter::repeat_n;
 
@@ -59,16 +59,11 @@ pub(super) fn table(task: CycleTask<'_>, computed: &Computed) -> Result<Frame, S
         .f64("pull_off_jkr_curve", each(|at| at.jkr_curve.map(|found| found.pull_off_m2), nominal_m2))
         .f64("loss_jkr_curve", each(|at| at.jkr_curve.map(|found| found.loss_m3), nominal_m2 * rms_height_m))
         .f64("loss_touched", reversals.iter().map(by_asperities));
-    let of_realised = Some(all.deng_kesari_realised);
     frame = apparent::columns(frame, &apparent::of_reversals(computed, &reversals, params)?);
     for (name, value) in ratio_columns(&all.ratios) {
         frame = frame.f64(name, same(value));
     }
-    for (columns, of) in [(&DENG_KESARI, all.deng_kesari), (&DENG_KESARI_REALISED, of_realised)] {
-        for (place, column) in columns.iter().enumerate() {
-            frame = frame.f64(column.name, same(of.and_then(|of| of.nominal_j[place])));
-        }
-    }
+    frame = deng_kesari::columns(frame, params, material, (&surface, target.as_ref()), &all)?;
     Ok(frame.build()?)
 }
 

@@ -3,6 +3,7 @@
 mod apparent;
 mod asperities;
 mod constants;
+mod deng_kesari;
 mod elements;
 mod estimates;
 mod method;

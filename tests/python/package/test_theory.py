@@ -66,6 +66,27 @@ def test_closed_forms():
     assert math.isnan(theory.adhesionless_area(-0.1, 0.1)) and math.isnan(theory.dalvi_loss(-1.0, work_of_adhesion_j_m2=G))
 
 
+def test_works_of_adhesion():
+    works = theory.pinning_works([3e-4, 4e-4], work_of_adhesion_j_m2=2e-3, prefactor=3.0)
+    np.testing.assert_allclose(works.closing_j_m2, [1.1e-3, np.nan])
+    np.testing.assert_allclose(works.opening_j_m2, [2.9e-3, np.nan])
+    assert theory.dalvi_closing(6e-4, work_of_adhesion_j_m2=2e-3) == pytest.approx(1.4e-3)
+    assert theory.effective_adhesion(0.1, 6e-4, work_of_adhesion_j_m2=2e-3) == pytest.approx(1.41e-3)
+    assert math.isnan(theory.dalvi_closing(2e-3, work_of_adhesion_j_m2=2e-3))
+    assert math.isnan(theory.effective_adhesion(0.1, -1.0, work_of_adhesion_j_m2=2e-3))
+
+
+def test_loss_of_a_probe():
+    m = Moments(2.5e-11, 8e-3, 2e8)
+    found = theory.deng_kesari_probe_loss(m, 1e-3, 2e-3, **GEL)
+    jump_in = math.pi * (2 * math.pi * 1e-6 * G / E) ** (2 / 3)
+    assert found.jump_in_area_m2 == pytest.approx(jump_in, rel=1e-12)
+    # brentq of the load of Eq 1, and quad of Eq A3: tests/physics/cut_off.rs.
+    assert found.area_m2 == pytest.approx(6.977255508529556e-8, rel=1e-11)
+    assert found.loss_j == pytest.approx(0.01251082268464191 * (found.area_m2 - jump_in), rel=1e-8)
+    assert math.isnan(theory.deng_kesari_probe_loss(m, 1e-3, -1.0, **GEL).loss_j)
+
+
 def test_moments_of_many_digits():
     for row in table("moments.csv"):
         surface = {**SURFACE, "hurst": row["H"], "magnification": row["zeta"]}

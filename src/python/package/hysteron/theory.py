@@ -86,6 +86,68 @@ def deng_kesari_loss(
     )
 
 
+class ProbeLoss(NamedTuple):
+    """Deng-Kesari estimate of a spherical probe; numbers or arrays."""
+
+    #: Dissipated energy Θ = η (A_max - A_in) <θ> [J].
+    loss_j: Result
+    #: Contact area A_max of the smooth probe at the load reversal [m2].
+    area_m2: Result
+    #: Contact area A_in of the smooth probe after its jump into contact at zero penetration [m2].
+    jump_in_area_m2: Result
+
+
+def deng_kesari_probe_loss(
+    moments: Moments,
+    radius_m: Reals,
+    max_load_n: Reals,
+    *,
+    contact_modulus_pa: Reals,
+    work_of_adhesion_j_m2: Reals,
+    as_printed: Collection[str] = (),
+) -> ProbeLoss:
+    """Deng-Kesari estimate of the dissipated energy of a probe of radius R with `R_tip = R` [J]. Sci. Rep. 9:1639 (2019).
+
+    Contact areas are those of the smooth sphere by JKR theory, at the load `max_load_n` [N] and after the jump into contact. NaN for a tension above the
+    pull-off force.
+    """
+    back = slips(as_printed)
+    columns = (*moments, contact_modulus_pa, work_of_adhesion_j_m2, radius_m, max_load_n)
+    return ProbeLoss(*many(_hysteron.deng_kesari_probe_loss, *columns, a2="a2" in back, a3="a3" in back))
+
+
+class Works(NamedTuple):
+    """Works of adhesion of the two branches of a loop; numbers or arrays."""
+
+    #: Of closing, the advancing contact line [J/m2].
+    closing_j_m2: Result
+    #: Of opening, the receding contact line [J/m2].
+    opening_j_m2: Result
+
+
+def pinning_works(elastic_energy_j_m2: Reals, *, work_of_adhesion_j_m2: Reals, prefactor: Reals) -> Works:
+    """Works of adhesion of crack-front pinning, `Δγ - k U_el` and `Δγ + k U_el` [J/m2], after Sanner et al., Sci. Adv. 10:eadl1277 (2024).
+
+    U_el is the elastic energy per area that flattens the roughness [J/m2]. The prefactor k is 1.2 to 1.5 in simulations of hysteron, and about 3 in the
+    publication, possibly as the full difference. NaN for k U_el >= Δγ/2, for k < 0 and for U_el < 0.
+    """
+    return Works(*many(_hysteron.pinning_works, work_of_adhesion_j_m2, elastic_energy_j_m2, prefactor))
+
+
+def dalvi_closing(elastic_energy_j_m2: Reals, *, work_of_adhesion_j_m2: Reals) -> Result:
+    """Work of adhesion of closing of conformal contact, `Δγ - U_el` [J/m2]. Dalvi et al., PNAS 116:25484 (2019). NaN for U_el >= Δγ and for U_el < 0."""
+    return one(_hysteron.dalvi_closing, work_of_adhesion_j_m2, elastic_energy_j_m2)
+
+
+def effective_adhesion(rms_slope: Reals, elastic_energy_j_m2: Reals, *, work_of_adhesion_j_m2: Reals) -> Result:
+    """Work of adhesion of both branches of reversible full contact, `Δγ (1 + h'_rms²/2) - U_el` [J/m2].
+
+    Persson & Tosatti, J. Chem. Phys. 115:5597 (2001). The area of small slopes exceeds the nominal one by the fraction h'_rms²/2. NaN for U_el >= Δγ, and for
+    a negative slope or energy.
+    """
+    return one(_hysteron.effective_adhesion, work_of_adhesion_j_m2, rms_slope, elastic_energy_j_m2)
+
+
 def dalvi_loss(area_m2: Reals, *, work_of_adhesion_j_m2: Reals) -> Result:
     """Work of adhesion times contact area, `Θ = Δγ A` [J], with the contact area A at load reversal [m2].
 

@@ -1,0 +1,51 @@
+//! Works of adhesion and those of models for the report.
+
+use super::StageError;
+use crate::campaign::Campaign;
+use crate::figures::{SimulatedWorks, works_over_cut_off};
+use crate::report::{Works, simulated_works};
+use crate::schema::CUTOFF;
+use crate::stats::{listing, loads};
+use crate::store::Frame;
+use crate::store::parquet::read_table;
+
+/// Cases with a figure.
+const MOST_PANELS: usize = 4;
+
+/// The table `cutoff` with a figure of each of the first cases, at its largest load; nothing if an earlier
+/// version of the program wrote the statistics, or without a case.
+pub(super) fn works(campaign: &Campaign, cases: &Frame) -> Result<Option<Works>, StageError> {
+    let path = campaign.statistics_path(CUTOFF.name);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let cutoff = read_table(&path, &CUTOFF)?;
+    if cutoff.row_count() == 0 {
+        return Ok(None);
+    }
+    let (ids, loads) = (cases.text("case_id")?, loads(cases)?);
+    let labels = loads.all_labels();
+    let radii = cases.f64_or_null("probe_radius_m")?;
+    let mut chosen: Vec<SimulatedWorks> = Vec::new();
+    for listed in listing(cases)?.rows {
+        let row = listed.row;
+        // The loads of a case ascend.
+        let is_last = ids.iter().rposition(|id| *id == ids[row]) == Some(row);
+        if !is_last || chosen.len() == MOST_PANELS {
+            continue;
+        }
+        let names = if radii[row].is_some() { ["approach", "retraction"] } else { ["closing", "opening"] };
+        let symbol = loads.symbol.replace(['{', '}'], "");
+        chosen.push(SimulatedWorks {
+            case_id: ids[row].to_owned(),
+            label: format!("{}, {symbol} = {}", listed.label, labels[row]),
+            names,
+            works_j_m2: simulated_works(cases, row)?,
+        });
+    }
+    let mut panels = Vec::new();
+    for (number, of) in chosen.iter().enumerate() {
+        panels.extend(works_over_cut_off(&cutoff, of, number + 1)?);
+    }
+    Ok(Some(Works { cutoff, panels }))
+}
