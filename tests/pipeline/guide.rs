@@ -200,7 +200,7 @@ fn law_the_stage_of_a_key_reads_it() {
         let row = page.lines().find(|line| line.starts_with(&format!("| `{path}` |"))).unwrap();
         let stage = row.trim_end_matches(" |").rsplit(" | ").next().unwrap();
         // Of a file, its content is read.
-        let pointer = if ["surface.file", "surface.spectrum"].contains(&path.as_str()) {
+        let pointer = if ["surface.file", "surface.files", "surface.spectrum"].contains(&path.as_str()) {
             "/reads/surface/blake3".to_owned()
         } else if OTHER_LOADS.contains(&path.trim_start_matches("cycle.")) {
             "/reads/cycle/max_load".to_owned()
