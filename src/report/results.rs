@@ -105,7 +105,8 @@ fn note(reference: Option<&str>) -> Markup {
          F_{{po}} (maximum tensile load during unloading), dissipated energy Θ (area of the loop), and its \
          estimate Θ_{{DK}} by Deng and Kesari (target spectrum; of a probe with R_{{tip}} = R). Brackets: \
          95 % confidence interval of the mean (Student). A lower limit below 0 of a quantity that \
-         cannot be negative is replaced by 0 and marked with †. Braces: values of the single surfaces, for fewer than {FEW}. A power of ten in a \
+         cannot be negative is replaced by 0 and marked with †. Braces: values of the single surfaces, \
+         for fewer than {FEW}. A power of ten in a \
          column head is the unit of its numbers."
     );
     html! {

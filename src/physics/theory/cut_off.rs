@@ -2,7 +2,8 @@
 //!
 //! The scales of roughness cost differently: the elastic energy of full contact is
 //! `U_el = (E*/4) Σ_k k|c_k|²` over the modes `c_k` \[m\] of wavevector k \[1/m\], with the reduced
-//! modulus E* \[Pa\]. Restricted to the wavelengths `2π/k ≥ λc` it is the energy `U_el(λ ≥ λc)` of a contact that ignores all shorter ones.
+//! modulus E* \[Pa\]. Restricted to the wavelengths `2π/k ≥ λc` it is the energy `U_el(λ ≥ λc)` of a
+//! contact that ignores all shorter ones.
 
 use crate::PhysicsError;
 use crate::surface::SquareMap;
