@@ -170,13 +170,13 @@ fn is_picture(path: &Path) -> bool {
         matches!(
             (sweep, panel),
             ("closer" | "elements", _) | ("contact", "maps") | ("method", "ratios") | ("measured", "loops")
-        ) || (sweep == "works" && panel.bytes().all(|digit| digit.is_ascii_digit()))
+        ) || (matches!(sweep, "works" | "spectrum") && panel.bytes().all(|digit| digit.is_ascii_digit()))
             || (!sweep.is_empty()
                 && panel.len() == 1
                 && panel.bytes().all(|letter| letter.is_ascii_uppercase()))
     };
     path.extension().and_then(|e| e.to_str()).is_some_and(|e| matches!(e, "svg" | "png" | "pdf"))
-        && stem.is_some_and(drawn)
+        && (name == Some("spectrum") || stem.is_some_and(drawn))
 }
 
 /// True if a name is that of a surface or a cycle, as `H0.80_z128_r03-1a2b3c4d` or `scan_r00-1a2b3c4d`. No
