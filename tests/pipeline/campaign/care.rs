@@ -83,8 +83,8 @@ fn e2e_a_receipt_tells_what_when_and_with_what() {
     assert_eq!(cycle["files"].as_array().unwrap().len(), 6);
     assert_eq!(
         of("report")["files"].as_array().unwrap().len(),
-        (5 + 8) * if cfg!(feature = "raster") { 3 } else { 1 } + 2,
-        "panels and pictures of a cycle in the formats of the build, their table and the page"
+        (2 * 5 + 8 + 1) * if cfg!(feature = "raster") { 3 } else { 1 } + 2,
+        "panels in both units, pictures of a cycle and works of adhesion in the formats of the build, their table and the page"
     );
     // No data file tells any of that.
     let host = cycle["made"]["host"].as_str().unwrap();
@@ -160,8 +160,13 @@ fn e2e_gc_takes_only_what_no_spec_names() {
     fs::create_dir(bench.out().join("cycles/H0.80-deadbeef")).unwrap();
     fs::write(bench.out().join("surfaces/.hysteron-torn.tmp"), "torn").unwrap();
     assert_eq!(code(&bench.verb("run", &[])), 0);
+    // The report has one figure of works of adhesion less.
+    let formats = if cfg!(feature = "raster") { 3 } else { 1 };
     let kept = stdout(&bench.look("gc", &["--keep", first.to_str().unwrap()]));
-    assert!(kept.contains("1 left over") && kept.contains(".hysteron-torn.tmp"), "{kept}");
+    assert!(
+        kept.contains(&format!("{} left over", 1 + formats)) && kept.contains(".hysteron-torn.tmp") && kept.contains("works_2"),
+        "{kept}"
+    );
     let before = files(&bench.out());
     let dry = stdout(&bench.look("gc", &[]));
     assert!(dry.contains("nothing was deleted"), "{dry}");
@@ -169,8 +174,8 @@ fn e2e_gc_takes_only_what_no_spec_names() {
     let answer = json(&stdout(&bench.look("gc", &["--delete", "--json"])));
     assert_eq!(
         answer["leftovers"].as_array().unwrap().len(),
-        15,
-        "of two surfaces each three files and a folder with their three receipts; and a torn file"
+        17 + formats,
+        "of two surfaces each four files and a folder with their three receipts; a figure of their case, and a torn file"
     );
     let after = files(&bench.out());
     assert!(after.contains_key(Path::new("surfaces/notes-20240131.h5")) && bench.out().join("cycles/H0.80-deadbeef").is_dir());
