@@ -71,8 +71,12 @@ pub fn compared(tables: &Tables<'_>, labels: &[String], stem: &str) -> Result<Ve
 
 fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result<Vec<Panel>, FigureError> {
     let surfaces = surfaces(tables.cases, found)?;
-    let scales = Scales::of(tables.cases, found, units)?;
-    let plots = plots(tables, found, &scales)?;
+    let scales = Scales::of(tables, found, units)?;
+    let mut plots = plots(tables, found, &scales)?;
+    // Surfaces of different size have no common scale.
+    plots.retain(|(_, plot)| {
+        units == Units::Dimensionless || plot.curves.iter().any(|curve| !curve.points.is_empty())
+    });
     // Adjacent panels have the same size.
     let margin = plots.iter().map(|(_, plot)| width_beside(plot)).fold(0.0, f64::max);
     // Where only the load varies, labels are numbers.

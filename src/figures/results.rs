@@ -63,7 +63,12 @@ pub(super) fn results(
     }
     let mut computed = Drawn::default();
     for of in measured {
-        measure(tables, sweep, &series, of, &unit, &mut computed)?;
+        match scales.column(of.name) {
+            Some((column, factor)) => {
+                measure(tables, sweep, &series, of, (column, &|_| Some(factor)), &mut computed)?;
+            }
+            None => measure(tables, sweep, &series, of, (of.name, &unit), &mut computed)?,
+        }
     }
     let crosses = computed.curves.iter().any(|curve| curve.stroke == Stroke::Crosses);
     let cut = computed.curves.iter().any(Curve::is_cut);
@@ -135,17 +140,18 @@ fn predict(
     Ok(())
 }
 
-/// Means of a result with error bars, or with crosses where there are too few surfaces for these.
+/// Means of a result, by its column and the factor of its values, with error bars, or with crosses where
+/// there are too few surfaces for these.
 fn measure(
     tables: &Tables<'_>,
     sweep: &Sweep,
     series: &[&str],
     of: &Measured,
-    unit: Unit<'_>,
+    (source, unit): (&str, Unit<'_>),
     drawn: &mut Drawn,
 ) -> Result<(), FigureError> {
     let Measured { name, text, stroke, positive } = *of;
-    let column = |end: &str| tables.cases.f64_or_null(&format!("{name}_{end}"));
+    let column = |end: &str| tables.cases.f64_or_null(&format!("{source}_{end}"));
     let (means, sds) = (column("mean")?, column("sd")?);
     let mut spread = false;
     for (at, series_name) in series.iter().enumerate() {
@@ -161,7 +167,7 @@ fn measure(
         }
         let (mut errors, mut crosses, mut hues) = (Vec::new(), Vec::new(), Vec::new());
         for member in &members {
-            let values = singles(tables.cases, tables.realizations, member.row, name)?;
+            let values = singles(tables.cases, tables.realizations, member.row, source)?;
             let (few, scale) = (values.len() < FEW, unit(member.row).unwrap_or(1.0));
             errors.push(sds.get(member.row).copied().flatten().filter(|_| !few).map(|sd| scale * sd));
             // The mark of one surface is its mean.

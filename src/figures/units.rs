@@ -1,8 +1,7 @@
 //! Units of the panels of a sweep.
 
 use super::FigureError;
-use super::sweep::Sweep;
-use crate::store::Frame;
+use super::sweep::{Sweep, Tables};
 
 /// Units of the panels of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,26 +36,43 @@ pub(super) enum Quantity {
     Loss,
 }
 
-/// Factors of the dimensionless quantities of cases, by the rows of the table `cases`.
+/// Scales of the results of cases, by the rows of the table `cases`.
 pub(super) struct Scales<'a> {
     units: Units,
     /// True if all cases of the sweep have a probe.
     of_probe: bool,
     modulus_pa: &'a [Option<f64>],
-    nominal_area_m2: &'a [Option<f64>],
-    rms_height_m: &'a [Option<f64>],
+    /// Nominal areas \[m²\] and rms heights \[m\] of the surfaces of each row; nothing where they differ.
+    area_m2: Vec<Option<f64>>,
+    rms_height_m: Vec<Option<f64>>,
 }
 
 impl<'a> Scales<'a> {
-    pub(super) fn of(cases: &'a Frame, sweep: &Sweep, units: Units) -> Result<Self, FigureError> {
-        let radius = cases.f64_or_null("probe_radius_m")?;
+    pub(super) fn of(tables: &Tables<'a>, sweep: &Sweep, units: Units) -> Result<Self, FigureError> {
+        let radius = tables.cases.f64_or_null("probe_radius_m")?;
         Ok(Self {
             units,
             of_probe: sweep.members.iter().all(|member| radius.get(member.row).is_some_and(Option::is_some)),
-            modulus_pa: cases.f64_or_null("contact_modulus_pa")?,
-            nominal_area_m2: cases.f64_or_null("nominal_area_m2_mean")?,
-            rms_height_m: cases.f64_or_null("rms_height_m")?,
+            modulus_pa: tables.cases.f64_or_null("contact_modulus_pa")?,
+            area_m2: common(tables, "nominal_area_m2")?,
+            rms_height_m: common(tables, "rms_height_m")?,
         })
+    }
+
+    /// Column of the tables `cases`, without its ending, and `realizations` that has a dimensionless result
+    /// in the units of the panel, if there is one, and the factor of its values.
+    pub(super) fn column(&self, result: &str) -> Option<(&'static str, f64)> {
+        if self.units == Units::Dimensionless {
+            return None;
+        }
+        let named = match (result, self.of_probe) {
+            ("pull_off_load", true) => ("pull_off_load_n", 1.0),
+            ("pull_off_load", false) => ("pull_off_pressure_pa", 1e-3),
+            ("loss", true) => ("loss_j", 1.0),
+            ("loss", false) => ("loss_j_m2", 1e3),
+            _ => return None,
+        };
+        Some(named)
     }
 
     /// Label of an axis.
@@ -80,18 +96,33 @@ impl<'a> Scales<'a> {
 
     /// Factor of the dimensionless values of a row; nothing if the row lacks a scale.
     pub(super) fn factor(&self, of: Quantity, row: usize) -> Option<f64> {
-        let of_row = |column: &[Option<f64>]| column.get(row).copied().flatten();
+        let of_row = |values: &[Option<f64>]| values.get(row).copied().flatten();
         if self.units == Units::Dimensionless {
             return Some(1.0);
         }
         // Milli, kilo and nano of the labels per area.
         let (area, milli, kilo) =
-            if self.of_probe { (of_row(self.nominal_area_m2)?, 1.0, 1.0) } else { (1.0, 1e3, 1e-3) };
+            if self.of_probe { (of_row(&self.area_m2)?, 1.0, 1.0) } else { (1.0, 1e3, 1e-3) };
         match of {
             Quantity::Area => Some(area),
-            Quantity::Penetration => Some(1e9 * of_row(self.rms_height_m)?),
+            Quantity::Penetration => Some(1e9 * of_row(&self.rms_height_m)?),
             Quantity::Load | Quantity::PullOff => Some(of_row(self.modulus_pa)? * area * kilo),
-            Quantity::Loss => Some(of_row(self.modulus_pa)? * area * of_row(self.rms_height_m)? * milli),
+            Quantity::Loss => Some(of_row(self.modulus_pa)? * area * of_row(&self.rms_height_m)? * milli),
         }
     }
 }
+
+/// Value that all realizations of each row of the table `cases` have in a column; nothing where they differ.
+fn common(tables: &Tables<'_>, column: &str) -> Result<Vec<Option<f64>>, FigureError> {
+    let (ids, known) = (tables.cases.text("case_id")?, tables.realizations.text("case_id")?);
+    let values = tables.realizations.f64_or_null(column)?;
+    let of_row = |id: &&str| {
+        let mut found = (0..known.len()).filter(|row| known[*row] == *id).map(|row| values[row]);
+        let first = found.next()??;
+        found.all(|value| value.is_some_and(|value| (value / first - 1.0).abs() < SAME)).then_some(first)
+    };
+    Ok(ids.iter().map(of_row).collect())
+}
+
+/// Relative difference of equal lengths: rounding.
+const SAME: f64 = 1e-9;

@@ -6,7 +6,9 @@ use super::keys::{Limits, find};
 use super::number::short;
 use super::values::Values;
 use super::walk::{Origin, written};
-use crate::model::{CaseParams, Coalescence, Control, FarField, Material, Method, Probe, SPHERE_SHARE};
+use crate::model::{
+    CaseParams, Coalescence, Control, FarField, Material, Method, Probe, SPHERE_SHARE, SurfaceSource,
+};
 use crate::physics::jkr::Asperity;
 
 /// Why a probe cannot be used on a square of a side \[m\] with a load \[N\], and what to do: its contact by
@@ -61,12 +63,16 @@ fn check_loads(case: &CaseParams, values: &Values, origins: &[Origin], faults: &
     for pair in [[keys[0], keys[1]], [keys[0], keys[2]], [keys[1], keys[2]]] {
         exclude(pair, help, origins, faults);
     }
+    let is_measured = matches!(case.surface, SurfaceSource::Measured(_));
+    let has_sides = values.measured.size_m > 0.0 && values.measured.size_y_m > 0.0;
     if !values.max_force_n.is_empty()
-        && values.length_m().is_none()
+        && is_measured
+        && !has_sides
         && let Some(span) = latest(&[keys[1]], origins)
     {
-        let message = "`cycle.max_force_n` needs the side of the measured surface";
-        let help = "give surface.size_m, or the load as cycle.max_pressure_pa = F/A0";
+        let message = "`cycle.max_force_n` needs both sides of the scan in the spec";
+        let help = "give surface.size_m and surface.size_y_m, along x and y: `hysteron import FILE -n` \
+                    prints numbers and spacings of the points; or the load as cycle.max_pressure_pa = F/A0";
         faults.add(&span, message.to_owned(), help.to_owned());
         return;
     }

@@ -76,7 +76,11 @@ pub(super) fn table(campaign: &Campaign, standings: &[Standing]) -> Result<Frame
         .build()?)
 }
 
-/// The rows of a case: means over the surfaces of its finished and failed cycles.
+/// Ratio of sides that are the same but for rounding.
+const SAME: f64 = 1.0 + 1e-6;
+
+/// The rows of a case: means over the surfaces of its finished and failed cycles. None if its scans differ in
+/// size.
 fn of_case(campaign: &Campaign, standings: &[Standing], case: usize) -> Result<Vec<Row>, StageError> {
     let is_known = |standing: &Standing| matches!(standing, Standing::Done | Standing::Failed(_));
     let surfaces: Vec<_> = campaign
@@ -88,6 +92,12 @@ fn of_case(campaign: &Campaign, standings: &[Standing], case: usize) -> Result<V
         .collect();
     let all: Vec<Vec<LongWaves>> =
         surfaces.par_iter().map(|unit| spectra::read(campaign, unit)).collect::<Result<_, _>>()?;
+    // Scans of different size have no wavelengths in common from the longest on.
+    let longest = || all.iter().filter_map(|waves| waves.first()).map(|of| of.cut_off_m);
+    let ends = longest().reduce(f64::min).zip(longest().reduce(f64::max));
+    if ends.is_some_and(|(least, most)| most > SAME * least) {
+        return Ok(Vec::new());
+    }
     let unit = &campaign.cases[case];
     let Some(known) = surfaces.iter().zip(&all).find(|(_, waves)| !waves.is_empty()) else {
         return Ok(Vec::new());

@@ -18,8 +18,13 @@ pub(super) fn files(campaign: &Campaign, done: &[bool]) -> Described {
     let mut files = Described::new();
     let mut resources: Vec<Value> = Vec::new();
     // A table that is in no folder of a run is no part of one.
-    let is_written =
-        |table: &Table| campaign.spec.experiment.is_some() || !table.name.starts_with("measured_");
+    let surfaces = || campaign.cases.iter().map(|unit| &unit.case.params.surface);
+    let has_lists = surfaces().any(|of| of.measured().is_some_and(|scan| !scan.files.is_empty()));
+    let is_written = |table: &Table| match table.name {
+        "measured_loops" | "measured_steps" => campaign.spec.experiment.is_some(),
+        "scans" | "scan_spectra" | "spectrum" => has_lists,
+        _ => true,
+    };
     for table in TABLES.iter().filter(|table| table.file.contains('/') && is_written(table)) {
         let Some(parts) = ids.of_table(table) else {
             resources.push(resource(table, table.name.to_owned(), table.file.to_owned(), schema(table)));

@@ -58,6 +58,7 @@ pub fn measure(params: &MeasuredSurface, digest: &str, key: &str) -> Result<Impo
     let scan = match source(path, params)? {
         Source::Own(header, heights) => {
             uncorrected(params)?;
+            same_size(params, header.length_m, heights.nrows())?;
             let (prepared, header) = own(params, *header, heights, digest, key)?;
             return Ok(Imported { prepared, header, height_factor_m: None, notes: Vec::new() });
         }
@@ -202,6 +203,31 @@ fn uncorrected(params: &MeasuredSurface) -> Result<(), StageError> {
         "surface.{name} corrects a scan, and this is a surface that hysteron wrote, which is used as it is\n\
          help: import the scan itself again with this option, or name it as surface.file"
     );
+    Err(refused(Path::new(&params.file), &why))
+}
+
+/// Refuses a size or a unit that contradicts a surface which this program wrote, of a side \[m\].
+fn same_size(params: &MeasuredSurface, length_m: f64, points: usize) -> Result<(), StageError> {
+    let pixel_m = length_m / points as f64;
+    let stated = [
+        ("size_m", params.size_m, length_m),
+        ("size_y_m", params.size_y_m, length_m),
+        ("pixel_m", params.pixel_m, pixel_m),
+    ];
+    let differs = |(_, given, own): &&(&str, f64, f64)| *given > 0.0 && (given / own - 1.0).abs() > SAME;
+    let why = match stated.iter().find(differs) {
+        Some((name, given, own)) => {
+            format!(
+                "surface.{name} is {given:.4e} m, and {own:.4e} m in the file\nhelp: remove surface.{name}"
+            )
+        }
+        None if !matches!(params.unit.as_str(), "" | "m") => format!(
+            "surface.unit is \"{}\", and a surface that hysteron wrote has heights in metres\n\
+             help: remove surface.unit",
+            params.unit
+        ),
+        None => return Ok(()),
+    };
     Err(refused(Path::new(&params.file), &why))
 }
 

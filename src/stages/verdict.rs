@@ -39,6 +39,21 @@ pub struct Verdict {
     pub error: Option<String>,
 }
 
+impl Verdict {
+    /// The verdicts on two scans of a case as one: that of the longer cycle, with the largest memory and the
+    /// fewest grid points per shortest wavelength of both.
+    fn worse(self, other: Self) -> Self {
+        let seconds = |of: &Self| of.cost.map_or(0.0, |cost| cost.seconds);
+        let (longer, shorter) = if seconds(&other) > seconds(&self) { (other, self) } else { (self, other) };
+        let both = longer.cost.zip(shorter.cost).map(|(long, short)| Cost {
+            memory_bytes: long.memory_bytes.max(short.memory_bytes),
+            per_wavelength: long.per_wavelength.min(short.per_wavelength),
+            ..long
+        });
+        Self { cost: both.or(longer.cost), ..longer }
+    }
+}
+
 /// Measured surfaces before a run, by their places in [`Campaign::surfaces`].
 pub(super) type Previews = HashMap<usize, Preview>;
 
@@ -75,8 +90,11 @@ pub(super) fn verdicts(campaign: &Campaign, previews: &Previews) -> Vec<Verdict>
         };
         let open = cycles[..checked].iter().copied().filter(|cycle| is_open(cycle));
         let error = open.filter_map(error_of).next();
-        let first = cycles.first().and_then(|cycle| previews.get(&cycle.surface));
-        Verdict { error, ..verdict(unit, first.and_then(Preview::known)) }
+        let scans = cycles[..checked]
+            .iter()
+            .map(|cycle| verdict(unit, previews.get(&cycle.surface).and_then(Preview::known)));
+        let verdict = scans.reduce(Verdict::worse).unwrap_or_else(|| verdict(unit, None));
+        Verdict { error, ..verdict }
     };
     campaign.cases.iter().zip(cycles).map(of).collect()
 }

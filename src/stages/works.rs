@@ -23,7 +23,7 @@ pub(super) fn works(campaign: &Campaign, cases: &Frame) -> Result<Option<Works>,
     if cutoff.row_count() == 0 {
         return Ok(None);
     }
-    let (ids, loads) = (cases.text("case_id")?, loads(cases)?);
+    let (ids, loads, done) = (cases.text("case_id")?, loads(cases)?, cases.i64("done_count")?);
     let labels = loads.all_labels();
     let radii = cases.f64_or_null("probe_radius_m")?;
     let mut chosen: Vec<SimulatedWorks> = Vec::new();
@@ -31,7 +31,7 @@ pub(super) fn works(campaign: &Campaign, cases: &Frame) -> Result<Option<Works>,
         let row = listed.row;
         // The loads of a case ascend.
         let is_last = ids.iter().rposition(|id| *id == ids[row]) == Some(row);
-        if !is_last || chosen.len() == MOST_PANELS {
+        if !is_last || done[row] == 0 || chosen.len() == MOST_PANELS {
             continue;
         }
         let names = if radii[row].is_some() { ["approach", "retraction"] } else { ["closing", "opening"] };

@@ -165,7 +165,9 @@ fn averages(group: &Group, case: &CaseInput, max_load: f64, finished: usize) -> 
     row.push(("failed_count".to_owned(), case.failed_count.into()));
     row.push(("unresolved_count".to_owned(), (done - group.values("loss").len().min(done)).into()));
     row.push(("not_reached_count".to_owned(), (finished - done).into()));
-    let words = caution(&row, case, [done, finished], group.unconverged.iter().any(|count| *count > 0.0));
+    let is_unconverged = group.unconverged.iter().any(|count| *count > 0.0);
+    let is_full = group.values("area_at_max_load").iter().any(|area| *area >= 1.0);
+    let words = caution(&row, case, [done, finished], [is_unconverged, is_full]);
     row.extend(model_error::columns(&row, case));
     row.push(("caution".to_owned(), words.as_str().into()));
     row

@@ -367,12 +367,13 @@ fn shortest_step(case: &CaseInput) -> f64 {
 }
 
 /// Codes of the warnings of a row whose other columns are given, joined by `+`. The counts are those of the
-/// realizations with a result in the row and at any load of its case.
+/// realizations with a result in the row and at any load of its case; the flags say that a step of one is
+/// unconverged, and that one is in full contact.
 pub(super) fn caution(
     row: &Given,
     case: &CaseInput,
     [done_count, finished_count]: [usize; 2],
-    unconverged: bool,
+    [unconverged, is_full]: [bool; 2],
 ) -> String {
     let is = |column: &str, value: Value| {
         case.parameters.iter().any(|(name, known)| name == column && *known == value)
@@ -393,7 +394,7 @@ pub(super) fn caution(
     let holds = |word: &str| match word {
         _ if by_elements && OF_ASPERITIES.contains(&word) => false,
         "left_out" => parameter("left_out_ratio").is_some_and(|ratio| ratio > MOST_LEFT_OUT),
-        "full_contact" => by_elements && number("area_at_max_load_mean").is_some_and(|area| area >= 1.0),
+        "full_contact" => by_elements && is_full,
         "coarse_steps" => by_elements && shortest_step(case) > LONGEST_STEP,
         "incomplete" => finished_count < case.planned_count,
         "not_reached" => done_count < finished_count,

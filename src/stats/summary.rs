@@ -194,9 +194,9 @@ fn in_si(cases: &Frame) -> Result<Vec<String>, StatsError> {
 
 /// Persson and Tosatti's work of adhesion of the rows that are shown, as a line; nothing where U_el ≥ Δγ.
 fn persson_tosatti(cases: &Frame, is_shown: impl Fn(usize) -> bool) -> Result<Option<String>, StatsError> {
-    let works = models::persson_tosatti(cases)?;
-    let shown: Vec<Option<f64>> =
-        (0..works.len()).filter(|row| is_shown(*row)).map(|row| works[row]).collect();
+    let (works, done) = (models::persson_tosatti(cases)?, cases.i64("done_count")?);
+    let is_finished = |row: &usize| is_shown(*row) && done[*row] > 0;
+    let shown: Vec<Option<f64>> = (0..works.len()).filter(is_finished).map(|row| works[row]).collect();
     let known = || shown.iter().flatten().copied();
     let [low, high] = [f64::min, f64::max]
         .map(|pick: fn(f64, f64) -> f64| known().reduce(pick).map(|work| significant(1e3 * work, 3)));

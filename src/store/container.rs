@@ -57,6 +57,8 @@ pub struct Container {
     pub members: Vec<Member>,
     /// Sentences on how it was read.
     pub notes: Vec<String>,
+    /// Measurements of the metadata whose files are missing.
+    pub lost: Vec<String>,
 }
 
 impl Container {
@@ -95,18 +97,17 @@ impl Container {
         let has = |wanted: &str| names.iter().any(|name| name == wanted);
         if has(INDEX) {
             let text = contents(&mut archive, INDEX, MOST_INDEX)?;
-            let (members, notes) = of_index(&text, &names)?;
-            return Ok(Some(Self { path: path.to_owned(), members, notes }));
+            return Ok(Some(Self { path: path.to_owned(), ..of_index(&text, &names)? }));
         }
         let is_x3p = names.iter().any(|name| name.rsplit('/').next() == Some("main.xml"));
         let members: Vec<Member> = names.iter().filter(|name| is_scan(name)).map(|name| bare(name)).collect();
         let is_npz = !names.is_empty() && names.iter().all(|name| name.ends_with(".npy"));
         if has(EARLIER_INDEX) {
             let note = format!("{EARLIER_INDEX} is not read: sizes and units are those of the files");
-            return Ok(Some(Self { path: path.to_owned(), members, notes: vec![note] }));
+            return Ok(Some(Self { path: path.to_owned(), members, notes: vec![note], lost: Vec::new() }));
         }
         let is_other = is_x3p || is_npz || members.is_empty();
-        Ok((!is_other).then(|| Self { path: path.to_owned(), members, notes: Vec::new() }))
+        Ok((!is_other).then(|| Self { path: path.to_owned(), members, notes: Vec::new(), lost: Vec::new() }))
     }
 
     /// Writes the file of a measurement into a folder, and gives its path.
@@ -181,18 +182,18 @@ fn contents(archive: &mut ZipArchive<BufReader<File>>, name: &str, most: u64) ->
     String::from_utf8(bytes).map_err(|_| format!("{name} is not in UTF-8").into())
 }
 
-/// Measurements of the metadata of a container, and notes.
-fn of_index(text: &str, names: &[String]) -> Result<(Vec<Member>, Vec<String>), Cause> {
+/// A container with these metadata.
+fn of_index(text: &str, names: &[String]) -> Result<Container, Cause> {
     let index: Value = serde_json::from_str(text).map_err(|error| format!("{INDEX} is damaged: {error}"))?;
     let Some(surfaces) = index["surfaces"].as_array() else {
         return Err(format!("{INDEX} has no list of surfaces").into());
     };
-    let (mut members, mut notes) = (Vec::new(), Vec::new());
+    let (mut members, mut notes, mut lost) = (Vec::new(), Vec::new(), Vec::new());
     for surface in surfaces {
         for measurement in surface["topographies"].as_array().into_iter().flatten() {
             match member(measurement, names) {
                 Ok(found) => members.push(found),
-                Err(note) => notes.push(note),
+                Err(why) => lost.push(why),
             }
         }
     }
@@ -203,11 +204,11 @@ fn of_index(text: &str, names: &[String]) -> Result<(Vec<Member>, Vec<String>), 
     members.iter().for_each(|of| *known.entry(of.part.as_str()).or_default() += 1);
     match known.into_iter().find(|(_, count)| *count > 1) {
         Some((part, _)) => Err(format!("{INDEX} names {part:?} twice").into()),
-        None => Ok((members, notes)),
+        None => Ok(Container { path: PathBuf::new(), members, notes, lost }),
     }
 }
 
-/// A measurement of the metadata, or a note on what is missing.
+/// A measurement of the metadata, or what is missing.
 fn member(of: &Value, names: &[String]) -> Result<Member, String> {
     let word = |value: &Value| value.as_str().filter(|text| !text.is_empty()).map(ToOwned::to_owned);
     let files = ["squeezed-netcdf", "original"].map(|key| word(&of["datafile"][key]));

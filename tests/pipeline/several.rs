@@ -4,7 +4,7 @@
 //! one in nanometres, and a line scan.
 
 use crate::bench::{Bench, code, stderr, stdout};
-use hysteron::schema::{CYCLES, REALIZATIONS, SCAN_SPECTRA, SCANS, SPECTRUM, Table};
+use hysteron::schema::{CUTOFF, CYCLES, PANELS, REALIZATIONS, SCAN_SPECTRA, SCANS, SPECTRUM, Table};
 use hysteron::spec::Spec;
 use hysteron::store::Frame;
 use hysteron::store::parquet::read_table;
@@ -319,4 +319,40 @@ fn reg_options_of_import_are_refused_with_help() {
     assert!(status == 1 && found.contains("the folder none does not exist\nhelp: create the folder (mkdir -p none)"), "{found}");
     let (status, found) = text(&["export", "psd", "s", "--out", "p.csv"]);
     assert!(status == 1 && found.contains("help: a run of a spec with surface.files"), "{found}");
+}
+
+/// Scans of different size: figures in SI units have the columns of the tables, those without a common scale are left out, and so is the table over the cut-off
+/// wavelength. A size that contradicts the file is an error, and a force needs the sizes.
+#[test]
+fn reg_scans_of_different_size_in_si_units() {
+    let bench = bench();
+    let at = |name: &str| bench.folder.path().join(name);
+    assert_eq!(code(&hysteron(&bench, &["import", "scans.zip", "--points", "4", "--out", "s"])), 0);
+    let files = "\"s/map_8_um.h5\", \"s/map_2_um.h5\"";
+    let probe = "[probe]\nradius_m = 1e-6\n[cycle]";
+    fs::write(at("spec.toml"), spec(files).replace("[cycle]", probe)).unwrap();
+    let run = hysteron(&bench, &["run", "spec.toml", "--out", "out"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let (drawn, results) = (table(&bench, &PANELS), table(&bench, &REALIZATIONS));
+    let (panels, names, y) = (drawn.text("panel").unwrap(), drawn.text("name").unwrap(), drawn.f64("y").unwrap());
+    let of = |panel: &str, name: &str| -> Vec<f64> {
+        (0..panels.len()).filter(|row| panels[*row] == panel && names[*row] == name).map(|row| y[row]).collect()
+    };
+    let singles = |column: &str| -> Vec<f64> { results.f64_or_null(column).unwrap().iter().flatten().copied().collect() };
+    assert_eq!(of("B_SI", "pull_off_load_single"), singles("pull_off_load_n"));
+    assert_eq!(of("D_SI", "loss_single"), singles("loss_j"));
+    assert!(!panels.iter().any(|panel| ["A_SI", "C_SI"].contains(panel)) && panels.contains(&"A"));
+    assert_eq!(table(&bench, &CUTOFF).row_count(), 0);
+    for (keys, words) in [
+        ("size_m = 5e-6", ["surface.size_m is 5.0000e-6 m", "remove surface.size_m"]),
+        ("unit = \"nm\"", ["heights in metres", "remove surface.unit"]),
+    ] {
+        fs::write(at("spec.toml"), spec(files).replace("[material]", &format!("{keys}\n[material]"))).unwrap();
+        let plan = stdout(&hysteron(&bench, &["plan", "spec.toml"])).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.iter().all(|word| plan.contains(word)), "{keys}: {plan}");
+    }
+    let force = spec(files).replace("[cycle]\nmax_load = [0.004]", "[cycle]\nmax_force_n = [1e-6]");
+    fs::write(at("spec.toml"), force).unwrap();
+    let refused = hysteron(&bench, &["plan", "spec.toml"]);
+    assert!(code(&refused) == 2 && stderr(&refused).contains("both sides of the scan"), "{}", stderr(&refused));
 }

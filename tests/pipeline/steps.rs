@@ -195,6 +195,7 @@ pub fn cycle(case_id: &str, realization: i64, steps: &Path, dk_per_area_j: f64) 
         loss_pinning_per_area_j: None,
         at_max_load: [0.002, 0.004, 0.0071, 0.012, 0.015].map(|load| (load, at_load(steps, load))).to_vec(),
         surface: given(&[
+            ("nominal_area_m2", 1e-6.into()),
             ("summit_count", Value::Whole(4000)),
             ("summit_density_1_m2", 4e9.into()),
             ("nayak_density_1_m2", 4.1e9.into()),

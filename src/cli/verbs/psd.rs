@@ -9,6 +9,7 @@ use crate::stages::psd_csv;
 use crate::store::commit::commit_bytes;
 use crate::store::parquet::read_table;
 use crate::text::shown;
+use std::f64::consts::TAU;
 
 pub(super) fn export(asked: &PsdArguments) -> Result<u8, Fault> {
     let dir = folder_of(&asked.dir)?;
@@ -47,9 +48,27 @@ pub(super) fn export(asked: &PsdArguments) -> Result<u8, Fault> {
     let rows = (0..ids.len()).filter(|row| ids[*row] == case).map(|row| [wavenumbers[row], densities[row]]);
     commit_bytes("write the spectrum to", &asked.out, psd_csv(rows).as_bytes()).map_err(failed)?;
     let name = crate::spec::quoted(&asked.out.to_string_lossy());
-    say(&format!(
-        "Written: {}\n\n[surface]\nspectrum = {name}\nspectrum_convention = \"plain\"\n",
-        asked.out.display()
-    ))?;
+    let band = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| {
+        (0..ids.len()).filter(|row| ids[*row] == case).map(|row| wavenumbers[row]).reduce(pick)
+    });
+    say(&format!("Written: {}\n\n{}", asked.out.display(), surface_spec(&name, band)))?;
     Ok(0)
+}
+
+/// Largest magnification of a printed spec.
+const MOST_MAGNIFIED: f64 = 64.0;
+
+/// Table `[surface]` of a spec with a spectrum of this quoted name between two wavenumbers \[1/m\]: the side
+/// and the magnification stay within it.
+pub(super) fn surface_spec(name: &str, band_1_m: [Option<f64>; 2]) -> String {
+    let mut text = format!("[surface]\nspectrum = {name}\nspectrum_convention = \"plain\"\n");
+    if let [Some(low), Some(high)] = band_1_m {
+        // Below the longest wavelength by more than the rounding of the printed side.
+        let length_m = 0.999 * TAU / low;
+        let magnification = (length_m * high / TAU).floor().min(MOST_MAGNIFIED);
+        if magnification >= 2.0 {
+            text += &format!("length_m = {length_m:.4e}\nmagnification = {magnification}\n");
+        }
+    }
+    text
 }

@@ -78,7 +78,7 @@ fn val_every_known_format_is_named_with_its_way_out() {
     for (name, bytes, problem, help) in [
         ("a.npz", &npz[..], "npz (NumPy archive)", "numpy.load("),
         ("a.xlsx", &xlsx[..], "an Excel workbook", "save the heights as CSV"),
-        ("a.zip", &container[..], "a container of contact.engineering", "unpack it"),
+        ("a.zip", &container[..], "a container of contact.engineering", "hysteron import FILE"),
         ("a.h5-jpk", b"\x89HDF\r\n\x1a\n", "h5-jpk (Bruker JPK video)", "load_h5jpk("),
         ("it's.txt.gz", b"\x1f\x8b\x08", "gzip", "it'\\''s.txt.gz'"),
         ("a.asc", b"ncols 100\nnrows 100\n", "ESRI ASCII grid", "--pixel-m"),

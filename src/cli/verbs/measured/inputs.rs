@@ -48,6 +48,7 @@ pub(super) fn inputs(asked: &ImportArguments, work: &TempDir) -> Result<Inputs, 
             Ok(Some(container)) => {
                 let archive = shown(file);
                 notes.extend(container.notes.iter().map(|note| format!("{archive}: {note}")));
+                container.lost.iter().for_each(|why| fails(why.clone()));
                 for member in &container.members {
                     match unpacked(asked, &archive, &container, member, work) {
                         Ok(input) => found.push(input),

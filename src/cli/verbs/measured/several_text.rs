@@ -1,5 +1,6 @@
 //! Result of an import of several scans as text and as JSON.
 
+use super::super::psd::surface_spec;
 use super::inputs::Left;
 use super::range::Range;
 use super::several::Taken;
@@ -171,11 +172,10 @@ fn files(of: &Shown<'_>, paths: &[PathBuf]) -> String {
     text += "Spec for these scans as realizations of one case; replace the material constants:\n\n";
     text += &spec_of(of.name, &format!("files = {list}"), first.imported.header.periodic, range);
     if let Some(psd) = paths.get(1).filter(|_| of.sample.common.len() > 1) {
-        text += &format!(
-            "\nThe common spectrum as surface.spectrum of generated surfaces:\n\n[surface]\nspectrum = \
-             {}\nspectrum_convention = \"plain\"\n",
-            crate::spec::quoted(&psd.to_string_lossy())
-        );
+        let ends = [of.sample.common.first(), of.sample.common.last()];
+        let name = crate::spec::quoted(&psd.to_string_lossy());
+        text += "\nThe common spectrum as surface.spectrum of generated surfaces:\n\n";
+        text += &surface_spec(&name, ends.map(|row| row.map(|row| row.wavenumber_1_m)));
     }
     text
 }
