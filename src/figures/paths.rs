@@ -2,6 +2,7 @@
 
 use super::FigureError;
 use super::axis::Axis;
+use super::closer::plot;
 use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 use super::style::{MOST_NOTES, NEUTRAL, curve, entry};
 use super::sweep::{Member, Sweep};
@@ -25,16 +26,16 @@ pub(super) fn paths(
                 && branches.get(*row) == Some(&branch)
                 && max_loads.get(*row) == Some(&max_load)
         };
-        let rows: Vec<usize> = (0..table.row_count()).filter(of_it).collect();
-        let unit = |of: Quantity| scales.factor(of, member.row);
-        let (unit_x, unit_y) = unit(Quantity::Load).zip(unit(quantity)).unwrap_or((f64::NAN, f64::NAN));
+        let units = scales.factor(Quantity::Load, member.row).zip(scales.factor(quantity, member.row));
+        let rows: Vec<usize> = (0..table.row_count()).filter(|row| units.is_some() && of_it(row)).collect();
+        let (unit_x, unit_y) = units.unwrap_or_default();
         let point = |row: &usize| Some((unit_x * loads.get(*row)?, unit_y * values.get(*row)?));
-        let points = rows.iter().filter_map(point).filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+        let points = rows.iter().filter_map(point).collect();
         let error = |row: &usize| spreads.get(*row).copied().flatten().map(|spread| unit_y * spread);
         let errors: Vec<Option<f64>> = rows.iter().map(error).collect();
-        let band = errors.iter().any(Option::is_some);
         let of_path = curve(branch, &member.label, points, member.colour.clone(), stroke);
-        Curve { errors, band, positive: quantity == Quantity::Area, ..of_path }
+        let positive = quantity == Quantity::Area;
+        Curve { band: errors.iter().any(Option::is_some), errors, positive, ..of_path }
     };
     let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
     let (beside, every) = (!sweep.differing.is_empty(), sweep.members.len().div_ceil(MOST_NOTES));
@@ -68,17 +69,7 @@ pub(super) fn paths(
         Axis::holding(scales.label(Quantity::Load), all().map(|point| point.0), true).with_headroom(room),
         Axis::holding(scales.label(quantity), curves.iter().flat_map(Curve::heights), true),
     );
-    Ok(XyPlot {
-        stem: String::new(),
-        letter: ' ',
-        title: String::new(),
-        x,
-        y,
-        curves,
-        key,
-        notes,
-        margin: 0.0,
-    })
+    Ok(XyPlot { key, notes, ..plot(String::new(), x, y, curves, &[]) })
 }
 
 /// Entries of the strokes and of the bands.
