@@ -2,7 +2,6 @@
 
 use super::FigureError;
 use super::axis::Axis;
-use super::closer::plot;
 use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 use super::style::{MOST_NOTES, NEUTRAL, curve, entry};
 use super::sweep::{Member, Sweep};
@@ -69,7 +68,13 @@ pub(super) fn paths(
         Axis::holding(scales.label(Quantity::Load), all().map(|point| point.0), true).with_headroom(room),
         Axis::holding(scales.label(quantity), curves.iter().flat_map(Curve::heights), true),
     );
-    Ok(XyPlot { key, notes, ..plot(String::new(), x, y, curves, &[]) })
+    Ok(XyPlot { notes, ..unnamed([x, y], curves, key) })
+}
+
+/// A plot without names and notes.
+pub(super) fn unnamed([x, y]: [Axis; 2], curves: Vec<Curve>, key: Vec<KeyEntry>) -> XyPlot {
+    let (stem, title, notes) = (String::new(), String::new(), Vec::new());
+    XyPlot { stem, letter: ' ', title, x, y, curves, key, notes, margin: 0.0 }
 }
 
 /// Entries of the strokes and of the bands.

@@ -3,6 +3,7 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
+use super::paths::unnamed;
 use super::style::{MOST_NOTES, NEUTRAL, THEORY, curve, entry, shade};
 use super::sweep::{Member, Sweep, Tables};
 use super::units::{Quantity, Scales};
@@ -85,17 +86,7 @@ pub(super) fn results(
     let y = Axis::holding(scales.label(quantity), curves.iter().flat_map(Curve::heights), true)
         .with_headroom(room);
     let x = sweep.axis.clone();
-    Ok(XyPlot {
-        stem: String::new(),
-        letter: ' ',
-        title: String::new(),
-        x,
-        y,
-        curves,
-        key,
-        notes: [computed.notes, predicted.notes].concat(),
-        margin: 0.0,
-    })
+    Ok(XyPlot { notes: [computed.notes, predicted.notes].concat(), ..unnamed([x, y], curves, key) })
 }
 
 /// Factor of the values of a row of the table `cases`.

@@ -51,7 +51,7 @@ pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};
 pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::{GENERATED, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, WHERE_USED};
-pub use probe::probe_refusal;
+pub use probe::{contact_radius_m, probe_refusal};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
 pub use values::Values;

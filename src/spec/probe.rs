@@ -11,6 +11,12 @@ use crate::model::{
 };
 use crate::physics::jkr::Asperity;
 
+/// Contact radius of a smooth probe by JKR at a load \[N\]; nothing at a tension above the pull-off force.
+#[must_use]
+pub fn contact_radius_m(probe: &Probe, material: &Material, load_n: f64) -> Option<f64> {
+    Asperity::new(probe.radius_m, material).ok()?.radius_at_load(load_n)
+}
+
 /// Why a probe cannot be used on a square of a side \[m\] with a load \[N\], and what to do: its contact by
 /// JKR is too large.
 #[must_use]
@@ -20,7 +26,7 @@ pub fn probe_refusal(
     length_m: f64,
     load_n: f64,
 ) -> Option<(String, String)> {
-    let radius_m = Asperity::new(probe.radius_m, material).ok()?.radius_at_load(load_n)?;
+    let radius_m = contact_radius_m(probe, material, load_n)?;
     let largest_m = SPHERE_SHARE * length_m;
     (radius_m > largest_m).then(|| {
         let problem = format!(

@@ -1,14 +1,13 @@
 //! Input of the aggregation: the rows of estimates of a cycle and its surface.
 
 use super::StageError;
-use super::cycle::Square;
 use super::extent::own_columns;
-use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
+use super::surface_row::SurfaceRow;
+use crate::campaign::{Campaign, CycleUnit};
 use crate::schema::{
     Column, DENG_KESARI, DENG_KESARI_PROBE, DENG_KESARI_PROBE_REALISED, DENG_KESARI_REALISED, ESTIMATES,
-    OF_CYCLE, OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
+    OF_CYCLE, OF_LOAD, OF_SURFACE,
 };
-use crate::spec::CaseParams;
 use crate::stats::{CycleInput, Given, Value};
 use crate::store::{ColumnData, Frame, FrameError, parquet};
 
@@ -21,28 +20,6 @@ const OF_FAILED: [&str; 6] = [
     "noise_share",
     "curvature_ratio",
 ];
-
-/// The row of a surface in its table of estimates.
-pub(super) struct SurfaceRow(Frame);
-
-impl SurfaceRow {
-    pub(super) fn read(campaign: &Campaign, unit: &SurfaceUnit) -> Result<Self, StageError> {
-        Ok(Self(parquet::read_table(&campaign.estimates_path(unit), &SURFACE_ESTIMATES)?))
-    }
-
-    /// Root-mean-square height \[m\].
-    pub(super) fn rms_height_m(&self) -> Result<f64, FrameError> {
-        self.0.first_f64("rms_height_m")
-    }
-
-    /// Square with the cut-off wavelength of a measured surface.
-    pub(super) fn square(&self, params: &CaseParams) -> Result<Square, FrameError> {
-        let number = |name: &str| self.0.first_f64(name);
-        let is_periodic = self.0.bool("periodic")?.first().copied().unwrap_or_default();
-        let is_mirrored = !is_periodic && params.probe.is_none();
-        Ok(Square { length_m: number("length_m")?, shortest_wavelength_m: number("cut_off_m")?, is_mirrored })
-    }
-}
 
 /// Columns of a failed cycle that depend on its surface and the material alone: those of its failure record,
 /// and those of its surface if that could be made.

@@ -2,7 +2,7 @@
 
 use super::StageError;
 use super::cycle::lattice;
-use super::cycle_input::SurfaceRow;
+use super::surface_row::SurfaceRow;
 use crate::campaign::{Campaign, CycleUnit, SurfaceUnit};
 use crate::schema::{CaseFacts, PARAMETERS};
 use crate::spec::CaseParams;

@@ -37,11 +37,13 @@ mod scan_spectra;
 mod single_cycle;
 mod spectra;
 mod surface;
+mod surface_row;
 mod task;
 mod verdict;
 mod works;
 
 use crate::constants::Constants;
+pub use crate::physics::surface::common_spectrum::{BandRoughness, CommonRow};
 pub use crate::physics::theory::probe::Estimate;
 pub use compare::{Comparison, compare};
 pub use cost::Cost;

@@ -7,6 +7,7 @@ mod quality;
 mod range;
 mod several;
 mod several_text;
+mod taken;
 mod text;
 
 use super::outputs::{may_be_written, undamaged_surface};

@@ -3,7 +3,7 @@
 use super::verdicts::range;
 use crate::campaign::Campaign;
 use crate::model::{CaseParams, Choice as _, FarField, Machine, Material, Probe, SPHERE_SHARE};
-use crate::physics::jkr::Asperity;
+use crate::spec::contact_radius_m;
 use crate::stages::Verdict;
 use crate::text::wrapped;
 use std::f64::consts::PI;
@@ -48,7 +48,7 @@ fn probe(cases: &[(&CaseParams, &Verdict)]) -> Option<String> {
     let turning = with().filter_map(|(params, of, probe)| {
         let (length_m, modulus_pa) = (of.length_m?, params.material.contact_modulus_pa);
         let load_n = params.cycle.largest_load() * modulus_pa * length_m.powi(2);
-        Some((Asperity::new(probe.radius_m, &params.material).ok()?.radius_at_load(load_n)?, length_m))
+        Some((contact_radius_m(&probe, &params.material, load_n)?, length_m))
     });
     match range(turning.clone().map(|(radius_m, _)| radius_m), 3)
         .zip(range(turning.map(|(radius_m, length_m)| radius_m / length_m), 2))

@@ -5,6 +5,7 @@ use super::super::{FAILED_CASES, Fault, failed, make_folder, say};
 use super::inputs::{Input, Left, inputs};
 use super::range::Range;
 use super::several_text::{Shown, answer, text};
+use super::taken::Taken;
 use super::{ImportArguments, check_options};
 use crate::keys::digest_of_file;
 use crate::model::MeasuredSurface;
@@ -14,16 +15,6 @@ use crate::store::hdf5::write_surface;
 use crate::store::parquet::write_table;
 use crate::text::shown;
 use std::path::{Path, PathBuf};
-
-/// A scan that was read.
-pub(super) struct Taken {
-    /// Its name in messages.
-    pub(super) label: String,
-    pub(super) imported: Imported,
-    pub(super) examined: Examined,
-    /// File of its surface.
-    pub(super) out: PathBuf,
-}
 
 /// Imports all scans that can be read, and names the others.
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {

@@ -3,11 +3,10 @@
 use super::super::psd::surface_spec;
 use super::inputs::Left;
 use super::range::Range;
-use super::several::Taken;
+use super::taken::Taken;
 use super::text::{Statistics, answer as answer_of, cautions, spec_of};
 use crate::model::Choice as _;
-use crate::physics::surface::common_spectrum::BandRoughness;
-use crate::stages::Sample;
+use crate::stages::{BandRoughness, CommonRow, Sample};
 use crate::stats::significant;
 use crate::text::{counted, wrapped};
 use serde_json::{Value, json};
@@ -218,7 +217,7 @@ pub(super) fn answer(of: &Shown<'_>) -> Value {
         });
         found
     };
-    let row = |row: &crate::physics::surface::common_spectrum::CommonRow| {
+    let row = |row: &CommonRow| {
         json!({
             "wavenumber_1_m": row.wavenumber_1_m, "density_m4": row.density_m4,
             "density_min_m4": row.lowest_m4, "density_max_m4": row.highest_m4,
