@@ -5,11 +5,8 @@ use super::closer::plot;
 use super::curve::{Stroke, XyPlot};
 use super::drawing::Drawing;
 use super::map::{ABOVE, GAP, LEGEND, PULLED, PUSHED, SIDE, circles, legend, scale_bar, sheet};
-use super::markup::described;
 use super::panels::Panel;
-use super::plot::plot_xy;
 use super::style::{OTHER, RESULT, THEORY, curve, shade};
-use super::units::Units;
 use super::{FigureError, markup};
 use crate::store::{Frame, LoopMaps};
 use ndarray::ArrayView2;
@@ -134,13 +131,5 @@ pub fn method_ratios(methods: &Frame) -> Result<Option<Panel>, FigureError> {
     let caption = "Area, pull-off force and dissipated energy of the asperity model over those of boundary \
                    elements, each surface a point. Table methods: area_at_max_load_ratio, \
                    pull_off_load_ratio, loss_ratio over persson_tosatti_realised.";
-    Ok(Some(Panel {
-        units: Units::Dimensionless,
-        stem: drawn.stem.clone(),
-        name: "ratios".to_owned(),
-        svg: described(&plot_xy(&drawn), caption),
-        caption: caption.to_owned(),
-        cases: Vec::new(),
-        plot: drawn,
-    }))
+    Ok(Some(Panel::alone("ratios", caption.to_owned(), drawn)))
 }

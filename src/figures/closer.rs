@@ -7,11 +7,8 @@ use super::curve::{Curve, Stroke, XyPlot};
 use super::cycle_loop::{Closer, Landmark, step_of};
 use super::drawing::Drawing;
 use super::map::map;
-use super::markup::described;
 use super::panels::Panel;
-use super::plot::plot_xy;
 use super::style::{OTHER, RESULT, THEORY, curve, entry, shade};
-use super::units::Units;
 use crate::stats::significant;
 use crate::store::Frame;
 use crate::text::counted;
@@ -60,17 +57,7 @@ pub fn closer(
 type End = (Landmark, i64, [u8; 3], Stroke);
 
 fn panel(name: &str, caption: String, plot: XyPlot) -> Panel {
-    let stem = format!("closer_{name}");
-    let plot = XyPlot { stem: stem.clone(), ..plot };
-    Panel {
-        units: Units::Dimensionless,
-        stem,
-        name: name.to_owned(),
-        svg: described(&plot_xy(&plot), &caption),
-        caption,
-        cases: Vec::new(),
-        plot,
-    }
+    Panel::alone(name, caption, XyPlot { stem: format!("closer_{name}"), ..plot })
 }
 
 pub(super) fn plot(

@@ -5,11 +5,8 @@ use super::axis::Axis;
 use super::captions;
 use super::closer::plot;
 use super::curve::{Curve, Stroke, XyPlot};
-use super::markup::described;
 use super::panels::Panel;
-use super::plot::plot_xy;
 use super::style::{NEUTRAL, OTHER, RESULT, THEORY, curve, entry, shade};
-use super::units::Units;
 use crate::store::Frame;
 
 /// Works of adhesion of a case at a load reversal.
@@ -90,16 +87,7 @@ pub fn works_over_cut_off(
         entry("pinning, k = 1.2 to 3", NEUTRAL, Some(Stroke::Area), false),
     ];
     let plot = XyPlot { stem: name.clone(), key, ..plot(String::new(), x, y, curves, &[]) };
-    let svg = described(&plot_xy(&plot), &caption);
-    Ok(Some(Panel {
-        stem: name.clone(),
-        name,
-        units: Units::Dimensionless,
-        caption,
-        cases: Vec::new(),
-        svg,
-        plot,
-    }))
+    Ok(Some(Panel::alone(&name, caption, plot)))
 }
 
 /// Axis of the cut-off wavelengths between two of them \[m\]: in metres over decades, or, for less than two

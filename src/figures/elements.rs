@@ -4,11 +4,8 @@ use super::closer::of_loop;
 use super::curve::{Curve, Note, Stroke, XyPlot};
 use super::drawing::Drawing;
 use super::elements_map::map;
-use super::markup::described;
 use super::panels::Panel;
-use super::plot::plot_xy;
 use super::style::{RESULT, THEORY, curve, entry, shade};
-use super::units::Units;
 use super::{FigureError, captions};
 use crate::store::{Frame, LoopMaps};
 
@@ -41,16 +38,7 @@ pub fn elements_loop(of: &ElementsLoop<'_>) -> Result<(Panel, Option<Drawing>), 
         of.parameters,
         captions::data(NAME)
     );
-    let svg = described(&plot_xy(&plot), &caption);
-    let panel = Panel {
-        stem: NAME.to_owned(),
-        name: NAME.to_owned(),
-        units: Units::Dimensionless,
-        caption,
-        cases: Vec::new(),
-        svg,
-        plot,
-    };
+    let panel = Panel::alone(NAME, caption, plot);
     Ok((panel, of.maps.map(|maps| map(of.parameters, of.steps, maps)).transpose()?))
 }
 

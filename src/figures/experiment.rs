@@ -5,11 +5,8 @@ use super::axis::Axis;
 use super::captions;
 use super::closer::plot;
 use super::curve::{Curve, Stroke, XyPlot};
-use super::markup::described;
 use super::panels::Panel;
-use super::plot::plot_xy;
 use super::style::{RESULT, case_colour, curve, entry, shade};
-use super::units::Units;
 use crate::store::Frame;
 
 /// Name of the panel in the table of panels.
@@ -66,16 +63,7 @@ pub fn measured_loops(measured: &Frame, simulated: Option<&Simulated<'_>>) -> Re
         captions::data(NAME)
     );
     let plot = XyPlot { stem: NAME.to_owned(), key, ..plot(String::new(), x, y, curves, &[]) };
-    let svg = described(&plot_xy(&plot), &caption);
-    Ok(Panel {
-        stem: NAME.to_owned(),
-        name: NAME.to_owned(),
-        units: Units::Dimensionless,
-        caption,
-        cases: Vec::new(),
-        svg,
-        plot,
-    })
+    Ok(Panel::alone(NAME, caption, plot))
 }
 
 fn of_simulated(of: &Simulated<'_>) -> Result<[Curve; 2], FigureError> {

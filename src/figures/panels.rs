@@ -30,6 +30,21 @@ pub struct Panel {
     pub plot: XyPlot,
 }
 
+impl Panel {
+    /// A dimensionless panel of no sweep; its plot has the stem of its file.
+    pub(super) fn alone(name: &str, caption: String, plot: XyPlot) -> Self {
+        Self {
+            stem: plot.stem.clone(),
+            name: name.to_owned(),
+            units: Units::Dimensionless,
+            cases: Vec::new(),
+            svg: described(&plot_xy(&plot), &caption),
+            caption,
+            plot,
+        }
+    }
+}
+
 /// Draws the panels of one sweep: `<sweep>_A` area over load, `<sweep>_B` pull-off force, `<sweep>_C`
 /// penetration over load, `<sweep>_D` dissipated energy, with the prediction of Deng and Kesari, `<sweep>_E`
 /// its fraction on each branch; in other units with an ending.

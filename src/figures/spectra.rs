@@ -5,11 +5,8 @@ use super::axis::Axis;
 use super::captions;
 use super::closer::plot;
 use super::curve::{Curve, KeyEntry, Stroke, XyPlot};
-use super::markup::described;
 use super::panels::Panel;
-use super::plot::plot_xy;
 use super::style::{THEORY, case_colour, curve, entry};
-use super::units::Units;
 use crate::store::Frame;
 
 /// Name of the panel in the table of panels.
@@ -56,16 +53,7 @@ fn panel(tables: &Spectra<'_>, place: usize, case: &str) -> Result<Panel, Figure
         captions::data(&stem)
     );
     let plot = XyPlot { stem: stem.clone(), key, ..plot(String::new(), x, y, curves, &[]) };
-    let svg = described(&plot_xy(&plot), &caption);
-    Ok(Panel {
-        stem: stem.clone(),
-        name: stem,
-        units: Units::Dimensionless,
-        caption,
-        cases: Vec::new(),
-        svg,
-        plot,
-    })
+    Ok(Panel::alone(&stem, caption, plot))
 }
 
 /// Curves and key of the scans of a case.

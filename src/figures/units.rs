@@ -2,6 +2,7 @@
 
 use super::FigureError;
 use super::sweep::{Sweep, Tables};
+use std::collections::HashMap;
 
 /// Units of the panels of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,12 +51,13 @@ pub(super) struct Scales<'a> {
 impl<'a> Scales<'a> {
     pub(super) fn of(tables: &Tables<'a>, sweep: &Sweep, units: Units) -> Result<Self, FigureError> {
         let radius = tables.cases.f64_or_null("probe_radius_m")?;
+        let of_si = |column| if units == Units::Si { common(tables, column) } else { Ok(Vec::new()) };
         Ok(Self {
             units,
             of_probe: sweep.members.iter().all(|member| radius.get(member.row).is_some_and(Option::is_some)),
             modulus_pa: tables.cases.f64_or_null("contact_modulus_pa")?,
-            area_m2: common(tables, "nominal_area_m2")?,
-            rms_height_m: common(tables, "rms_height_m")?,
+            area_m2: of_si("nominal_area_m2")?,
+            rms_height_m: of_si("rms_height_m")?,
         })
     }
 
@@ -116,12 +118,15 @@ impl<'a> Scales<'a> {
 fn common(tables: &Tables<'_>, column: &str) -> Result<Vec<Option<f64>>, FigureError> {
     let (ids, known) = (tables.cases.text("case_id")?, tables.realizations.text("case_id")?);
     let values = tables.realizations.f64_or_null(column)?;
-    let of_row = |id: &&str| {
-        let mut found = (0..known.len()).filter(|row| known[*row] == *id).map(|row| values[row]);
-        let first = found.next()??;
-        found.all(|value| value.is_some_and(|value| (value / first - 1.0).abs() < SAME)).then_some(first)
-    };
-    Ok(ids.iter().map(of_row).collect())
+    let mut of_case: HashMap<&str, Option<f64>> = HashMap::new();
+    for (id, value) in known.iter().zip(values) {
+        let shared = of_case.entry(id).or_insert(*value);
+        let is_same = shared.zip(*value).is_some_and(|(shared, value)| (value / shared - 1.0).abs() < SAME);
+        if !is_same {
+            *shared = None;
+        }
+    }
+    Ok(ids.iter().map(|id| of_case.get(id).copied().flatten()).collect())
 }
 
 /// Relative difference of equal lengths: rounding.

@@ -44,6 +44,7 @@ mod works;
 
 use crate::constants::Constants;
 pub use crate::physics::surface::common_spectrum::{BandRoughness, CommonRow};
+pub use crate::physics::surface::periodogram::Ring;
 pub use crate::physics::theory::probe::Estimate;
 pub use compare::{Comparison, compare};
 pub use cost::Cost;

@@ -23,7 +23,6 @@ use crate::stages::{Examined, Imported, measure};
 use crate::store::hdf5::{read_surface, write_surface, write_tamaas};
 use crate::store::scan::export::write_netcdf3;
 use range::Range;
-use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use text::{Statistics, answer, text};
 
@@ -112,17 +111,7 @@ fn surface(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> {
         written,
     };
     if asked.json {
-        let rings: Vec<Value> = prepared
-            .rings
-            .iter()
-            .map(|ring| {
-                json!({
-                    "wavenumber_1_m": ring.wavenumber_1_m, "density_m4": ring.density_m4,
-                    "mode_count": ring.mode_count,
-                })
-            })
-            .collect();
-        say(&format!("{:#}\n", answer(&statistics, &rings)))?;
+        say(&format!("{:#}\n", answer(&statistics, &prepared.rings)))?;
     } else {
         say(&text(&statistics))?;
     }

@@ -196,18 +196,7 @@ pub(super) fn answer(of: &Shown<'_>) -> Value {
     };
     let scan = |place: usize| {
         let (scan, taken) = (&of.sample.scans[place], &of.taken[place]);
-        let rings: Vec<Value> = scan
-            .spectrum
-            .rings
-            .iter()
-            .map(|ring| {
-                json!({
-                    "wavenumber_1_m": ring.wavenumber_1_m, "density_m4": ring.density_m4,
-                    "mode_count": ring.mode_count,
-                })
-            })
-            .collect();
-        let mut found = answer_of(&of.statistics(place), &rings);
+        let mut found = answer_of(&of.statistics(place), &scan.spectrum.rings);
         let (band, [own, common]) = (scan.spectrum.band, of.sample.beside(scan));
         found["name"] = json!(taken.label);
         found["reliable"] = json!({

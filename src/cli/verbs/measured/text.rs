@@ -4,6 +4,7 @@ use super::quality::{self, Line};
 use super::range::Range;
 use crate::model::{Choice, Detrend, Filter, SpectrumEnd};
 use crate::spec::quoted;
+use crate::stages::Ring;
 use crate::stats::{Limit, significant};
 use crate::store::hdf5::{Measured, SurfaceHeader};
 use crate::text::{counted, wrapped};
@@ -31,8 +32,15 @@ pub(super) struct Statistics<'a> {
     pub(super) written: Option<&'a Path>,
 }
 
-/// The statistics of a surface as JSON.
-pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
+/// A ring of the spectrum as JSON.
+fn ring(of: &Ring) -> Value {
+    json!({
+        "wavenumber_1_m": of.wavenumber_1_m, "density_m4": of.density_m4, "mode_count": of.mode_count,
+    })
+}
+
+/// The statistics of a surface, with the rings of its spectrum, as JSON.
+pub(super) fn answer(of: &Statistics<'_>, rings: &[Ring]) -> Value {
     let Statistics { header, height_factor_m, range, counts: [points, summits, edge], written, .. } = *of;
     let measured = header.measured.as_ref();
     let texture = measured.and_then(|of| of.texture.as_ref());
@@ -81,7 +89,7 @@ pub(super) fn answer(of: &Statistics<'_>, rings: &[Value]) -> Value {
         "flattening_octave_m": range.octave_m,
         "flattening_octave_shortest_wavelength_m": range.shortest_m,
         "least_modulus_over_adhesion_1_m": range.least_1_m(),
-        "spectrum": rings,
+        "spectrum": rings.iter().map(ring).collect::<Vec<_>>(),
     });
     quality::numbers(header).into_iter().for_each(|(name, value)| answer[name] = value);
     answer
