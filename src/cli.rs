@@ -165,6 +165,11 @@ enum Verb {
         /// Id of a case, cycle or surface; or `statistics`, or `report`
         id: String,
     },
+    /// Print what a publication of a run cites, in BibTeX
+    Cite {
+        #[command(flatten)]
+        folder: FolderArguments,
+    },
     /// Submit pending tasks to Slurm
     Submit {
         /// Spec (TOML), or the output folder of a run

@@ -32,6 +32,7 @@ pages!(
     report,
     python,
     performance,
+    architecture,
     contributing,
     glossary,
 );

@@ -27,6 +27,7 @@
 
 #[cfg(feature = "stats")]
 pub mod campaign;
+pub mod citation;
 #[cfg(feature = "stats")]
 pub mod cli;
 #[cfg(feature = "stats")]

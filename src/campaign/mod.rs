@@ -187,6 +187,13 @@ impl Campaign {
         Self::with_counts(spec, dir, counts)
     }
 
+    /// Numbers of cases by the asperity model and by boundary elements.
+    #[must_use]
+    pub fn case_counts(&self) -> [usize; 2] {
+        let elements = self.cases.iter().filter(|unit| unit.case.params.elements().is_some()).count();
+        [self.cases.len() - elements, elements]
+    }
+
     /// Tasks of a spec with the given number of realizations of each case.
     #[must_use]
     pub fn with_counts(spec: Spec, dir: PathBuf, counts: Vec<u32>) -> Self {

@@ -1,6 +1,7 @@
 //! Parts of the report: data access and citation.
 
 use super::layout::{heading, line, prose};
+use crate::citation::bibtex;
 use crate::stats::{StatsError, labels_with_unit};
 use crate::store::Frame;
 use maud::{Markup, html};
@@ -24,30 +25,13 @@ const PYTHON: &str = concat!(
 const R: &str = r#"cases <- read.csv("csv/cases.csv")
 plot(cases$area_at_max_load_mean, cases$loss_mean)"#;
 
-const CITATION: &str = "Model: G. Violano and L. Afferrante, “Roughness-induced adhesive hysteresis in \
-    self-affine fractal surfaces”, Lubricants 9(1):7, 2021, with corrected equations; the guide of hysteron \
-    lists the corrections. The provenance records in `receipts/` state program, commit and compiler of each \
-    file.";
+const CITATION: &str = "These entries are the program, its methods and the models whose estimates are next \
+    to the results; `hysteron cite` prints them for a run. The equations of Violano and Afferrante are \
+    corrected; the guide of hysteron lists the corrections. The provenance records in `receipts/` state \
+    program, commit and compiler of each file.";
 
 /// Files and folders of the run that the page links.
 const FILES: [&str; 5] = ["campaign.toml", "datapackage.json", "statistics/", "figures/", "receipts/"];
-
-const BIBTEX: &str = r#"@software{hysteron,
-  title   = {hysteron: adhesive hysteresis of rough surfaces},
-  author  = {{The hysteron developers}},
-  version = {VERSION},
-  year    = {2026}
-}
-@article{violano2021,
-  title   = {Roughness-induced adhesive hysteresis in self-affine fractal surfaces},
-  author  = {Violano, G. and Afferrante, L.},
-  journal = {Lubricants},
-  volume  = {9},
-  number  = {1},
-  pages   = {7},
-  year    = {2021},
-  doi     = {10.3390/lubricants9010007}
-}"#;
 
 /// Parts of a study.
 pub(super) struct Study<'a> {
@@ -141,7 +125,7 @@ pub(super) fn usage() -> Markup {
 }
 
 /// Citation and files.
-pub(super) fn citation() -> Markup {
+pub(super) fn citation(case_counts: [usize; 2]) -> Markup {
     html! {
         (heading("Citation"))
         (line(&html! {
@@ -150,7 +134,7 @@ pub(super) fn citation() -> Markup {
                 (prose(CITATION))
             }
         }))
-        (line(&html! { pre.copy { (BIBTEX.replace("VERSION", env!("CARGO_PKG_VERSION"))) } }))
+        (line(&html! { pre.copy { (bibtex(case_counts)) } }))
         (line(&html! {
             p {
                 "Files: "

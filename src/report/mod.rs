@@ -107,6 +107,12 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     let has_results = report.cases.i64("done_count")?.iter().any(|count| *count > 0);
     let body = html! {
         (results::results(&cases)?)
+        @if let Some(loops) = report.measured_loops { (experiment::section(loops, &cases, &numbers)?) }
+        @if has_results {
+            @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
+            @if !report.cycles.is_empty() { (single_cycle::section(&numbers, report.cycles)) }
+            @if let Some(data) = report.explorer { (explorer(data, cases.has_spots()?)) }
+        }
         (results::changes(&cases)?)
         @if let Some(chart) = report.sensitivity {
             (heading("Sensitivity")) (layout::figure(&numbers, chart))
@@ -114,19 +120,20 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         (methods::side_by_side(&cases, report.methods, report.method_figures, &numbers)?)
         (scans::scans(report.scans))
         @if let Some(spectra) = report.scan_spectra { (spectra::section(spectra, &numbers)?) }
-        @if let Some(loops) = report.measured_loops { (experiment::section(loops, &cases, &numbers)?) }
         @if has_results {
-            @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
-            @if !report.cycles.is_empty() { (single_cycle::section(&numbers, report.cycles)) }
-            @if let Some(data) = report.explorer { (explorer(data, cases.has_spots()?)) }
             (theories::theories(&cases)?)
             @if let Some(of) = report.works { (works::section(of, &cases, &numbers)?) }
             (validity::budget(&cases)?)
             (validity::validity(&cases)?)
+        }
+        (heading("Parameters"))
+        p { (introduction(report)) } "\n"
+        (header::facts(report.cases, report.seed, report.realizations_text)?)
+        @if has_results {
             (data::methods(report.cases, &study)?)
             (data::usage())
         }
-        (data::citation())
+        (data::citation(report.case_counts))
         (heading("Spec with all defaults"))
         details { summary { "TOML" } pre { (report.spec) } } "\n"
     };
@@ -134,7 +141,6 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     let page = html! {
         header {
             h1 { (report.name) } "\n"
-            p { (introduction(report)) } "\n"
             (failures::failures(report.failures, report.cycle_count))
             @if has_results {
                 (header::banner(report.cases, report.methods)?)
@@ -142,7 +148,6 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
                 div.banner.amber role="note" { p { b { "No results: no surface finished." } " `hysteron run` \
                      computes the pending cycles." } } "\n"
             }
-            (header::facts(report.cases, report.seed, report.realizations_text)?)
             @if has_results { (switch(report.is_in_si)) }
             (header::contents(&body))
         }

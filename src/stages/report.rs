@@ -167,11 +167,10 @@ fn page(
     statistics: &Statistics,
     drawings: &Drawings,
 ) -> Result<String, StageError> {
-    let elements = campaign.cases.iter().filter(|unit| unit.case.params.elements().is_some()).count();
     Ok(report::page(&Report {
         name: &campaign.spec.name,
         key,
-        case_counts: [campaign.cases.len() - elements, elements],
+        case_counts: campaign.case_counts(),
         seed: campaign.spec.seed,
         realizations_text: &campaign.realizations_in_words(),
         failures: &failures(campaign, standings),

@@ -109,6 +109,7 @@ fn performed(verb: &Verb) -> Result<u8, Fault> {
         }
         Verb::Findings(asked) => findings::findings(&asked.runs, asked.json),
         Verb::Show { folder, id } => show::show(folder, id),
+        Verb::Cite { folder } => show::cite(folder),
         Verb::Plan { spec, output } => survey::plan(spec, output),
         Verb::Status { folder, watch } => survey::status(folder, *watch),
         Verb::Explain { folder, id, spec } => care::explain(folder, id, spec.as_deref()),

@@ -1,4 +1,4 @@
-//! `show`: one case or task with its parameters, results, warnings and files.
+//! `show`: one case or task with its parameters, results, warnings and files. `cite`: what a run cites.
 
 use super::outputs::undamaged;
 use super::place::{folder, open_dir};
@@ -6,6 +6,7 @@ use super::{Fault, failed, say};
 use crate::campaign::{
     Campaign, CaseUnit, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, SurfaceUnit, Unit,
 };
+use crate::citation::bibtex;
 use crate::cli::FolderArguments;
 use crate::model::{GeneratedSurface, SurfaceSource};
 use crate::schema::{self, Table};
@@ -69,6 +70,13 @@ pub(super) fn show(asked: &FolderArguments, id: &str) -> Result<u8, Fault> {
         )));
     };
     say(&if asked.json { format!("{:#}\n", answer(id, &found)) } else { described(id, &found) })?;
+    Ok(0)
+}
+
+pub(super) fn cite(asked: &FolderArguments) -> Result<u8, Fault> {
+    let campaign = open_dir("cite", &folder(asked)?)?;
+    let bibtex = bibtex(campaign.case_counts());
+    say(&if asked.json { format!("{:#}\n", json!({ "bibtex": bibtex })) } else { format!("{bibtex}\n") })?;
     Ok(0)
 }
 
