@@ -2,6 +2,7 @@
 
 use super::curve::{Curve, Stroke, XyPlot};
 use super::cycle_loop::Closer;
+use super::paths::{MOST_FACETS, places};
 use super::sweep::Sweep;
 use super::units::{Quantity, Scales};
 use crate::stats::{Values, significant};
@@ -27,6 +28,15 @@ pub(super) fn of_sweep(
     };
     let mut parts = vec![format!("{what}{}; {surfaces}", cases(sweep))];
     if matches!(letter, 'A' | 'C') {
+        if !plot.title.is_empty() {
+            parts.push(format!("at {}", plot.title));
+            let values = places(sweep).len();
+            if values > MOST_FACETS {
+                parts.push(format!(
+                    "{MOST_FACETS} of {values} values have a panel, and all are in the table curves"
+                ));
+            }
+        }
         parts.push("loading dashed, unloading solid".to_owned());
         if surfaces.starts_with("mean") {
             parts.push(

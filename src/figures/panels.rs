@@ -50,8 +50,9 @@ impl Panel {
 /// its fraction on each branch; in other units with an ending.
 ///
 /// The horizontal axis of B, D and E is the parameter that varies; if only the load reversal varies, it is
-/// the area at the end of loading. If several parameters vary, the first one is the axis, and the caption
-/// names the others. Lines join only cases that differ in nothing else. A case without finished realizations
+/// the area at the end of loading. If several parameters vary, the one with most values is the axis, the
+/// others are series with a colour each, and A and C have a panel for each value of the axis (`A`, `A2`, …).
+/// Of several loads of such cases the largest is drawn. Lines join only cases that differ in nothing else. A case without finished realizations
 /// has no curve and no point. Error bars and bands are one standard deviation; for quantities that cannot be
 /// negative, they end at 0. Results of fewer than five surfaces have crosses at the single surfaces instead
 /// of bars.
@@ -61,7 +62,7 @@ impl Panel {
 /// # Errors
 /// If no case belongs to the sweep, or a table lacks a column.
 pub fn panels(tables: &Tables<'_>, sweep: &str, units: Units) -> Result<Vec<Panel>, FigureError> {
-    let found = Sweep::find(tables.cases, sweep)?;
+    let found = Sweep::find(tables, sweep)?;
     let done = tables.cases.i64("done_count")?;
     if found.members.iter().all(|member| done.get(member.row).is_none_or(|count| *count == 0)) {
         return Ok(Vec::new());
@@ -100,15 +101,22 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result
         (load, true) => format!("F_{{max}}/(E*A_{{0}}) = {load}"),
         (label, false) => label.to_owned(),
     };
-    let cases: Vec<(String, String)> =
-        found.members.iter().map(|member| (named(member), member.colour.clone())).collect();
-    let panel = |(letter, plot): (char, XyPlot)| {
-        let stem = format!("{stem}_{letter}{}", units.ending());
+    let mut cases: Vec<(String, String)> = Vec::new();
+    for member in &found.members {
+        let label = if found.has_facets() { member.series.clone() } else { named(member) };
+        if !cases.iter().any(|(known, _)| *known == label) {
+            cases.push((label, member.colour.clone()));
+        }
+    }
+    let panel = |(name, plot): (String, XyPlot)| {
+        let letter = name.chars().next().unwrap_or(' ');
+        let name = format!("{name}{}", units.ending());
+        let stem = format!("{stem}_{name}");
         let plot = XyPlot { letter, stem: stem.clone(), margin, ..plot };
         let caption = of_sweep(letter, found, &surfaces, (&plot, &scales));
         Panel {
             stem,
-            name: format!("{letter}{}", units.ending()),
+            name,
             units,
             svg: described(&plot_xy(&plot), &caption),
             caption,
@@ -124,7 +132,7 @@ fn plots(
     tables: &Tables<'_>,
     found: &Sweep,
     scales: &Scales<'_>,
-) -> Result<Vec<(char, XyPlot)>, FigureError> {
+) -> Result<Vec<(String, XyPlot)>, FigureError> {
     // Releasing absorbed asperities has no potential, so that one branch may gain energy.
     let branch = |name, text, stroke| Measured { name, text, stroke, positive: false };
     let computed =
@@ -166,13 +174,27 @@ fn plots(
         branch("dissipated_unloading", "unloading", Stroke::Solid),
         branch("dissipated_loading", "loading", Stroke::Dashed),
     ];
-    Ok(vec![
-        ('A', paths(tables.curves, found, "area", (Quantity::Area, scales))?),
-        ('B', results(tables, found, (Quantity::PullOff, scales), &[computed("pull_off_load")], &[])?),
-        ('C', paths(tables.curves, found, "penetration", (Quantity::Penetration, scales))?),
-        ('D', results(tables, found, (Quantity::Loss, scales), &[computed("loss")], &theories)?),
-        ('E', results(tables, found, (Quantity::Loss, scales), &branches, &[])?),
-    ])
+    let of_path = |letter: &str, column: &str, quantity| -> Result<Vec<(String, XyPlot)>, FigureError> {
+        let numbered =
+            |(k, plot)| (if k == 0 { letter.to_owned() } else { format!("{letter}{}", k + 1) }, plot);
+        Ok(paths(tables.curves, found, column, (quantity, scales))?
+            .into_iter()
+            .enumerate()
+            .map(numbered)
+            .collect())
+    };
+    let of_results = |letter: &str, quantity, measured: &[Measured], theories: &[Predicted]| {
+        results(tables, found, (quantity, scales), measured, theories)
+            .map(|plot| vec![(letter.to_owned(), plot)])
+    };
+    Ok([
+        of_path("A", "area", Quantity::Area)?,
+        of_results("B", Quantity::PullOff, &[computed("pull_off_load")], &[])?,
+        of_path("C", "penetration", Quantity::Penetration)?,
+        of_results("D", Quantity::Loss, &[computed("loss")], &theories)?,
+        of_results("E", Quantity::Loss, &branches, &[])?,
+    ]
+    .concat())
 }
 
 /// Number of surfaces of the means of a sweep.

@@ -8,67 +8,127 @@ use super::sweep::{Member, Sweep};
 use super::units::{Quantity, Scales};
 use crate::store::Frame;
 
-/// Loading and unloading paths of every member, of a quantity in some units. The area cannot be negative.
+/// Curves whose bands can be told apart.
+const MOST_BANDS: usize = 4;
+/// Values of the horizontal axis of the results that have a panel of paths each.
+pub(super) const MOST_FACETS: usize = 6;
+
+/// Loading and unloading paths of every member, of a quantity in some units: one plot, or one for each value
+/// of the first parameter where several vary. The area cannot be negative.
 pub(super) fn paths(
     table: &Frame,
     sweep: &Sweep,
     column: &str,
     (quantity, scales): (Quantity, &Scales<'_>),
-) -> Result<XyPlot, FigureError> {
-    let (ids, branches) = (table.text("case_id")?, table.text("branch")?);
-    let (max_loads, loads, values) =
-        (table.f64_or_null("max_load")?, table.f64("load")?, table.f64(&format!("{column}_mean"))?);
-    let spreads = table.f64_or_null(&format!("{column}_sd"))?;
-    let picked = |member: &Member, branch: &str, max_load: Option<f64>, stroke: Stroke| -> Curve {
+) -> Result<Vec<XyPlot>, FigureError> {
+    let groups = facets(sweep);
+    let of_group = |members: &Vec<&Member>| -> Result<Parts, FigureError> {
+        let source = Source { table, column, quantity, scales };
+        let (mut curves, mut drawn) = (Vec::new(), Vec::new());
+        // One loading path serves all load reversals of a case: it has the colour of the largest load.
+        for member in members.iter().rev() {
+            if !drawn.contains(&member.case_id) {
+                curves.push(source.curve(member, "loading", members.len())?);
+                drawn.push(member.case_id.clone());
+            }
+        }
+        curves.reverse();
+        let mut notes = Vec::new();
+        let (beside, every) = (!sweep.differing.is_empty(), members.len().div_ceil(MOST_NOTES));
+        for (at, member) in members.iter().enumerate() {
+            let unloading = source.curve(member, "unloading", members.len())?;
+            if let Some(end) = unloading.points.first()
+                && members.len() > 1
+                && at % every == 0
+            {
+                let text = if sweep.has_facets() { &member.series } else { &member.label };
+                notes.push(Note { at: *end, text: text.clone(), beside });
+            }
+            curves.push(unloading);
+        }
+        let title = if sweep.has_facets() { members[0].facet.clone() } else { String::new() };
+        Ok((title, curves, notes))
+    };
+    let parts: Vec<Parts> = groups.iter().map(of_group).collect::<Result<_, _>>()?;
+    let all = || parts.iter().flat_map(|(_, curves, _)| curves);
+    // Numbers at the ends need room to the right of the last one.
+    let beside = !sweep.differing.is_empty();
+    let room = if beside || parts.iter().all(|(_, _, notes)| notes.is_empty()) { 0.0 } else { 0.1 };
+    let loads = all().flat_map(|curve| curve.points.iter().map(|point| point.0));
+    let x = Axis::holding(scales.label(Quantity::Load), loads, true).with_headroom(room);
+    let y = Axis::holding(scales.label(quantity), all().flat_map(Curve::heights), true);
+    let plot = |(title, curves, notes): Parts| {
+        let mut key = key_of(&curves);
+        if !beside && !notes.is_empty() {
+            let symbol = sweep.load_symbol.replace('*', "^{*}");
+            key.push(entry(&format!("numbers: {symbol}"), NEUTRAL, None, false));
+        }
+        XyPlot { title, notes, ..unnamed([x.clone(), y.clone()], curves, key) }
+    };
+    Ok(parts.into_iter().map(plot).collect())
+}
+
+/// Title, curves and notes of a plot.
+type Parts = (String, Vec<Curve>, Vec<Note>);
+
+/// Members by value of the first parameter where several vary; of many values the first, the last and some
+/// between.
+fn facets(sweep: &Sweep) -> Vec<Vec<&Member>> {
+    if !sweep.has_facets() {
+        return vec![sweep.members.iter().collect()];
+    }
+    let places = places(sweep);
+    let last = places.len() - 1;
+    let shown = places.len().min(MOST_FACETS);
+    let at = |k: usize| places[if shown > 1 { k * last / (shown - 1) } else { 0 }];
+    let members = |x: f64| sweep.members.iter().filter(|one| one.x.total_cmp(&x).is_eq()).collect();
+    (0..shown).map(at).map(members).collect()
+}
+
+/// Different values of the first parameter, in ascending order.
+pub(super) fn places(sweep: &Sweep) -> Vec<f64> {
+    let mut places: Vec<f64> = sweep.members.iter().map(|member| member.x).collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup_by(|a, b| a.total_cmp(b).is_eq());
+    places
+}
+
+/// Where the paths of a member are.
+struct Source<'a> {
+    table: &'a Frame,
+    column: &'a str,
+    quantity: Quantity,
+    scales: &'a Scales<'a>,
+}
+
+impl Source<'_> {
+    /// Path of a branch of a member, one of a number in the same plot.
+    fn curve(&self, member: &Member, branch: &str, of: usize) -> Result<Curve, FigureError> {
+        let Self { table, column, quantity, scales } = *self;
+        let (ids, branches) = (table.text("case_id")?, table.text("branch")?);
+        let (max_loads, loads, values) =
+            (table.f64_or_null("max_load")?, table.f64("load")?, table.f64(&format!("{column}_mean"))?);
+        let spreads = table.f64_or_null(&format!("{column}_sd"))?;
+        let (max_load, stroke) = match branch {
+            "loading" => (None, Stroke::Dashed),
+            _ => (Some(member.max_load), Stroke::Solid),
+        };
         let of_it = |row: &usize| {
-            ids.get(*row) == Some(&member.case_id.as_str())
-                && branches.get(*row) == Some(&branch)
-                && max_loads.get(*row) == Some(&max_load)
+            ids[*row] == member.case_id && branches[*row] == branch && max_loads[*row] == max_load
         };
         let units = scales.factor(Quantity::Load, member.row).zip(scales.factor(quantity, member.row));
         let rows: Vec<usize> = (0..table.row_count()).filter(|row| units.is_some() && of_it(row)).collect();
         let (unit_x, unit_y) = units.unwrap_or_default();
-        let point = |row: &usize| Some((unit_x * loads.get(*row)?, unit_y * values.get(*row)?));
-        let points = rows.iter().filter_map(point).collect();
-        let error = |row: &usize| spreads.get(*row).copied().flatten().map(|spread| unit_y * spread);
-        let errors: Vec<Option<f64>> = rows.iter().map(error).collect();
-        let of_path = curve(branch, &member.label, points, member.colour.clone(), stroke);
+        let points = rows.iter().map(|row| (unit_x * loads[*row], unit_y * values[*row])).collect();
+        let errors: Vec<Option<f64>> = rows
+            .iter()
+            .map(|row| spreads[*row].map(|spread| unit_y * spread).filter(|_| of <= MOST_BANDS))
+            .collect();
+        let band = errors.iter().any(Option::is_some);
         let positive = quantity == Quantity::Area;
-        Curve { band: errors.iter().any(Option::is_some), errors, positive, ..of_path }
-    };
-    let (mut curves, mut notes, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
-    let (beside, every) = (!sweep.differing.is_empty(), sweep.members.len().div_ceil(MOST_NOTES));
-    // One loading path serves all load reversals of a case: it has the colour of the largest load.
-    for member in sweep.members.iter().rev() {
-        if !drawn.contains(&member.case_id) {
-            curves.push(picked(member, "loading", None, Stroke::Dashed));
-            drawn.push(member.case_id.clone());
-        }
+        let path = curve(branch, &member.label, points, member.colour.clone(), stroke);
+        Ok(Curve { band, errors, positive, ..path })
     }
-    curves.reverse();
-    for (at, member) in sweep.members.iter().enumerate() {
-        let unloading = picked(member, "unloading", Some(member.max_load), Stroke::Solid);
-        if let Some(end) = unloading.points.first()
-            && sweep.members.len() > 1
-            && at % every == 0
-        {
-            notes.push(Note { at: *end, text: member.label.clone(), beside });
-        }
-        curves.push(unloading);
-    }
-    let mut key = key_of(&curves);
-    if !beside && !notes.is_empty() {
-        let symbol = sweep.load_symbol.replace('*', "^{*}");
-        key.push(entry(&format!("numbers: {symbol}"), NEUTRAL, None, false));
-    }
-    let all = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
-    // Numbers at the ends need room to the right of the last one.
-    let room = if beside || notes.is_empty() { 0.0 } else { 0.1 };
-    let (x, y) = (
-        Axis::holding(scales.label(Quantity::Load), all().map(|point| point.0), true).with_headroom(room),
-        Axis::holding(scales.label(quantity), curves.iter().flat_map(Curve::heights), true),
-    );
-    Ok(XyPlot { notes, ..unnamed([x, y], curves, key) })
 }
 
 /// A plot without names and notes.

@@ -50,9 +50,13 @@ pub(super) fn results(
     measured: &[Measured],
     theories: &[Predicted],
 ) -> Result<XyPlot, FigureError> {
-    let mut series: Vec<&str> = sweep.members.iter().map(|member| member.series.as_str()).collect();
-    series.sort_unstable();
-    series.dedup();
+    // In the order of their values.
+    let mut series: Vec<&str> = Vec::new();
+    for member in &sweep.members {
+        if !series.contains(&member.series.as_str()) {
+            series.push(&member.series);
+        }
+    }
     // If only the load reversal varies, the only line joins its results.
     if sweep.differing.is_empty() {
         series.truncate(1);
@@ -62,13 +66,13 @@ pub(super) fn results(
     for theory in theories {
         predict(tables, sweep, &series, *theory, &unit, &mut predicted)?;
     }
-    let mut computed = Drawn::default();
+    let (mut computed, lines) = (Drawn::default(), measured.len());
     for of in measured {
         match scales.column(of.name) {
             Some((column, factor)) => {
-                measure(tables, sweep, &series, of, (column, &|_| Some(factor)), &mut computed)?;
+                measure(tables, sweep, &series, of, (column, &|_| Some(factor), lines), &mut computed)?;
             }
-            None => measure(tables, sweep, &series, of, (of.name, &unit), &mut computed)?,
+            None => measure(tables, sweep, &series, of, (of.name, &unit, lines), &mut computed)?,
         }
     }
     let crosses = computed.curves.iter().any(|curve| curve.stroke == Stroke::Crosses);
@@ -97,6 +101,12 @@ fn joined<'a>(sweep: &'a Sweep, series: &'a str) -> impl Iterator<Item = &'a Mem
     sweep.members.iter().filter(move |member| sweep.differing.is_empty() || member.series == series)
 }
 
+/// Colour of a line: that of its series if several parameters vary.
+fn line_colour(sweep: &Sweep, series: &str, else_of: [u8; 3]) -> String {
+    let member = joined(sweep, series).next().filter(|_| sweep.has_facets());
+    member.map_or_else(|| shade(else_of, 0, 1), |member| member.colour.clone())
+}
+
 /// Lines of a prediction.
 fn predict(
     tables: &Tables<'_>,
@@ -108,7 +118,7 @@ fn predict(
 ) -> Result<(), FigureError> {
     let means = tables.cases.f64_or_null(&format!("{theory}_mean"))?;
     let (mut any, mut marked) = (false, false);
-    for (at, name) in series.iter().enumerate() {
+    for name in series {
         let points: Vec<(f64, f64)> =
             joined(sweep, name).filter_map(|member| point(means, member, unit)).collect();
         if let Some(end) = points.last()
@@ -117,10 +127,8 @@ fn predict(
         {
             drawn.notes.push(Note { at: *end, text: format!("{abbreviation}, {name}"), beside: true });
         }
-        let line = Curve {
-            joined: sweep.is_joined(),
-            ..curve(theory, name, points, shade(THEORY, at, series.len()), stroke)
-        };
+        let shown = line_colour(sweep, name, THEORY);
+        let line = Curve { joined: sweep.is_joined(), ..curve(theory, name, points, shown, stroke) };
         any |= !line.points.is_empty();
         marked |= line.is_marked();
         drawn.curves.push(line);
@@ -131,14 +139,14 @@ fn predict(
     Ok(())
 }
 
-/// Means of a result, by its column and the factor of its values, with error bars, or with crosses where
-/// there are too few surfaces for these.
+/// Means of a result, by its column, the factor of its values and the number of lines of each series, with
+/// error bars, or with crosses where there are too few surfaces for these.
 fn measure(
     tables: &Tables<'_>,
     sweep: &Sweep,
     series: &[&str],
     of: &Measured,
-    (source, unit): (&str, Unit<'_>),
+    (source, unit, lines): (&str, Unit<'_>, usize),
     drawn: &mut Drawn,
 ) -> Result<(), FigureError> {
     let Measured { name, text, stroke, positive } = *of;
@@ -152,7 +160,7 @@ fn measure(
             members.iter().filter_map(|member| point(means, member, unit)).collect();
         if let Some(end) = points.last()
             && series.len() > 1
-            && at % series.len().div_ceil(MOST_NOTES) == 0
+            && at % (series.len() * lines).div_ceil(MOST_NOTES) == 0
         {
             drawn.notes.push(Note { at: *end, text: (*series_name).to_owned(), beside: true });
         }
@@ -168,7 +176,8 @@ fn measure(
             hues.resize(crosses.len(), member.colour.clone());
         }
         spread |= errors.iter().any(Option::is_some);
-        let mean = curve(name, series_name, points, shade(NEUTRAL, 0, 1), stroke);
+        let shown = line_colour(sweep, series_name, NEUTRAL);
+        let mean = curve(name, series_name, points, shown.clone(), stroke);
         let mark_colours = members.iter().map(|member| member.colour.clone()).collect();
         drawn.curves.push(Curve {
             errors,
@@ -179,8 +188,7 @@ fn measure(
             ..mean
         });
         if !crosses.is_empty() {
-            let single =
-                curve(&format!("{name}_single"), series_name, crosses, shade(NEUTRAL, 0, 1), Stroke::Crosses);
+            let single = curve(&format!("{name}_single"), series_name, crosses, shown, Stroke::Crosses);
             drawn.curves.push(Curve { mark_colours: hues, ..single });
         }
     }

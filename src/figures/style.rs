@@ -41,6 +41,32 @@ pub(super) fn case_colour(place: usize, load: usize, loads: usize) -> String {
     shade(hue.map(|part| (f64::from(part) * dark).round() as u8), load, loads)
 }
 
+/// Number of colours from which on numbers have a scale instead of the palette.
+const SCALE_FROM: usize = 3;
+
+/// Scale of numbers, from dark to light with any colour vision (viridis, without its pale end).
+const SCALE: [[f64; 3]; 6] = [
+    [68.0, 1.0, 84.0],
+    [65.0, 68.0, 135.0],
+    [42.0, 120.0, 142.0],
+    [34.0, 168.0, 132.0],
+    [122.0, 196.0, 70.0],
+    [196.0, 190.0, 20.0],
+];
+
+/// The colour of one of several series: of numbers in their order along a scale, else of the palette; of one
+/// of its loads as [`case_colour`] has it.
+pub(super) fn series_colour(place: usize, of: usize, in_order: bool, [load, loads]: [usize; 2]) -> String {
+    if !in_order || of < SCALE_FROM {
+        return case_colour(place, load, loads);
+    }
+    let along = place as f64 / (of - 1) as f64 * (SCALE.len() - 1) as f64;
+    let from = (along as usize).min(SCALE.len() - 2);
+    let share = along - from as f64;
+    let part = |k: usize| (SCALE[from][k] + share * (SCALE[from + 1][k] - SCALE[from][k])).round() as u8;
+    shade([0, 1, 2].map(part), load, loads)
+}
+
 /// A curve without errors, of something and by its name.
 pub(super) fn curve(name: &str, of: &str, points: Vec<(f64, f64)>, colour: String, stroke: Stroke) -> Curve {
     let [name, of] = [name, of].map(str::to_owned);

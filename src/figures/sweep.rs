@@ -2,7 +2,7 @@
 
 use super::FigureError;
 use super::axis::Axis;
-use super::style::case_colour;
+use super::style::{case_colour, series_colour};
 use crate::stats::{Values, Varying, loads, varying};
 use crate::store::Frame;
 
@@ -15,6 +15,8 @@ pub struct Tables<'a> {
     pub curves: &'a Frame,
     /// The table `realizations`.
     pub realizations: &'a Frame,
+    /// True if panels of sweeps of other parameters have all loads, and not the largest of each case alone.
+    pub all_loads: bool,
 }
 
 /// A row of the table `cases` that belongs to the sweep.
@@ -31,6 +33,10 @@ pub(super) struct Member {
     pub(super) colour: String,
     /// Parameters besides `x`: members that share them are joined by a line.
     pub(super) series: String,
+    /// Value along the horizontal axis, as a label.
+    pub(super) facet: String,
+    /// Places among the values of the parameters besides `x`.
+    rank: Vec<usize>,
 }
 
 /// A sweep.
@@ -56,26 +62,18 @@ fn unknown(name: &str, sweeps: &[&str]) -> FigureError {
 
 impl Sweep {
     /// Finds the members of a sweep.
-    pub(super) fn find(cases: &Frame, name: &str) -> Result<Self, FigureError> {
-        let sweeps = cases.text("sweep")?;
-        let belongs = |joined: &&str| joined.split('+').any(|one| one == name);
-        let rows: Vec<usize> =
-            sweeps.iter().enumerate().filter(|(_, joined)| belongs(joined)).map(|(row, _)| row).collect();
-        if rows.is_empty() {
-            return Err(unknown(name, &sweeps));
-        }
+    pub(super) fn find(tables: &Tables<'_>, name: &str) -> Result<Self, FigureError> {
+        let cases = tables.cases;
+        let (rows, differing) = chosen(tables, name)?;
         let (ids, max_loads, loads) = (cases.text("case_id")?, cases.f64("max_load")?, loads(cases)?);
         let area = cases.f64_or_null("area_at_max_load_mean")?;
-        let differing = varying(cases, &rows)?;
         let load_labels = loads.labels(rows.iter().copied());
-        let load_of = |row: usize| loads.values.get(row).copied().unwrap_or_default();
-        let many_loads = rows
-            .windows(2)
-            .any(|pair| pair.first().map(|row| load_of(*row)) != pair.last().map(|row| load_of(*row)));
-        let words = words(&differing);
+        let load_of = |row: &usize| loads.values.get(*row).copied().unwrap_or_default();
+        let many_loads = rows.windows(2).any(|pair| load_of(&pair[0]) != load_of(&pair[1]));
+        let words = words(differing.first());
+        let ranks: Vec<Vec<usize>> = differing.iter().skip(1).map(ranks).collect();
         let mut members = Vec::new();
         for (place, row) in rows.iter().enumerate() {
-            let max_load = max_loads.get(*row).copied().unwrap_or_default();
             let x = match differing.first().map(|first| &first.values) {
                 Some(Values::Numbers(numbers)) => numbers.get(place).copied().flatten(),
                 Some(Values::Words(all)) => all
@@ -84,40 +82,38 @@ impl Sweep {
                     .map(|at| at as f64),
                 None => area.get(*row).copied().flatten(),
             };
-            let said = |of: &[Varying]| -> Vec<String> {
-                of.iter()
-                    .filter(|parameter| !parameter.is_absent(place))
-                    .map(|parameter| parameter.named(place))
-                    .collect()
-            };
-            let (mut parts, mut series) = (said(&differing), said(differing.get(1..).unwrap_or_default()));
-            if many_loads {
-                let load = load_labels.get(place).map_or("", String::as_str);
-                if differing.is_empty() {
-                    parts.push(load.to_owned());
-                } else {
-                    parts.push(format!("F_{{max}} = {load}"));
-                    series.push(format!("F_{{max}} = {load}"));
-                }
-            }
-            let case_id = ids.get(*row).copied().unwrap_or_default().to_owned();
-            let (label, series, colour) = (parts.join(", "), series.join(", "), String::new());
-            // Without a place, a member has curves but no point; NaN is left out of every axis.
-            let x = x.unwrap_or(f64::NAN);
-            members.push(Member { row: *row, case_id, max_load, x, label, colour, series });
+            let load = load_labels.get(place).map(String::as_str).filter(|_| many_loads);
+            let [label, series] = named(&differing, place, load);
+            members.push(Member {
+                row: *row,
+                case_id: ids.get(*row).copied().unwrap_or_default().to_owned(),
+                max_load: max_loads.get(*row).copied().unwrap_or_default(),
+                // Without a place, a member has curves but no point; NaN is left out of every axis.
+                x: x.unwrap_or(f64::NAN),
+                label,
+                colour: String::new(),
+                series,
+                facet: differing.first().map_or_else(String::new, |first| first.named(place)),
+                rank: ranks.iter().map(|rank| rank[place]).collect(),
+            });
         }
-        let order = |member: &Member| {
-            if differing.is_empty() { member.max_load } else { member.x }
-        };
+        let order = |member: &Member| if differing.is_empty() { member.max_load } else { member.x };
         members.sort_by(|a, b| {
-            order(a)
-                .total_cmp(&order(b))
+            a.rank
+                .cmp(&b.rank)
+                .then(order(a).total_cmp(&order(b)))
                 .then(a.max_load.total_cmp(&b.max_load))
                 .then(a.case_id.cmp(&b.case_id))
         });
         let axis = axis(&differing, words, &members);
-        colour(&mut members, differing.is_empty());
+        colour(&mut members, &differing);
         Ok(Self { members, differing, many_loads, load_symbol: loads.symbol, axis })
+    }
+
+    /// True if several parameters vary: the colour is that of the series, and the panels of paths have one
+    /// value of the horizontal axis each.
+    pub(super) fn has_facets(&self) -> bool {
+        self.differing.len() > 1
     }
 
     /// True if lines join the results: not between categories.
@@ -137,6 +133,8 @@ impl Sweep {
             colour: case_colour(row, 0, 1),
             // Runs are not joined by a line.
             series: label.clone(),
+            facet: String::new(),
+            rank: Vec::new(),
         };
         let differing = vec![Varying::named_as(["campaign", "run", "run"], Values::Words(labels.to_vec()))];
         let members: Vec<Member> = labels.iter().enumerate().map(member).collect();
@@ -150,25 +148,102 @@ impl Sweep {
     }
 }
 
-/// Colours the members: one colour for each case, or for each load where only the load varies.
-fn colour(members: &mut [Member], by_load: bool) {
-    let mut loads: Vec<f64> = members.iter().map(|member| member.max_load).collect();
-    loads.sort_by(f64::total_cmp);
-    loads.dedup();
-    let mut cases: Vec<String> = Vec::new();
-    for member in members {
-        if !cases.contains(&member.case_id) {
-            cases.push(member.case_id.clone());
+/// Rows of the sweep in the table `cases`, with what varies between them: the parameter with most values
+/// first.
+fn chosen(tables: &Tables<'_>, name: &str) -> Result<(Vec<usize>, Vec<Varying>), FigureError> {
+    let cases = tables.cases;
+    let sweeps = cases.text("sweep")?;
+    let belongs = |joined: &str| joined.split('+').any(|one| one == name);
+    let mut rows: Vec<usize> = (0..sweeps.len()).filter(|row| belongs(sweeps[*row])).collect();
+    if rows.is_empty() {
+        return Err(unknown(name, &sweeps));
+    }
+    let mut differing = varying(cases, &rows)?;
+    if !differing.is_empty() && !tables.all_loads {
+        let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
+        let largest = |row: &usize| {
+            let mut of_case = rows.iter().filter(|other| ids[**other] == ids[*row]);
+            of_case.all(|other| loads[*other] <= loads[*row])
+        };
+        rows = rows.iter().copied().filter(largest).collect();
+        differing = varying(cases, &rows)?;
+    }
+    let most = (0..differing.len()).rev().max_by_key(|at| count(&differing[*at])).unwrap_or_default();
+    differing.get_mut(..=most).into_iter().for_each(|first| first.rotate_right(1));
+    Ok((rows, differing))
+}
+
+/// Label of all that varies, and of all but the first parameter.
+fn named(differing: &[Varying], place: usize, load: Option<&str>) -> [String; 2] {
+    let said = |of: &[Varying]| -> Vec<String> {
+        let present = of.iter().filter(|parameter| !parameter.is_absent(place));
+        present.map(|parameter| parameter.named(place)).collect()
+    };
+    let mut parts = [said(differing), said(differing.get(1..).unwrap_or_default())];
+    match load {
+        Some(load) if differing.is_empty() => parts[0].push(load.to_owned()),
+        Some(load) => parts.iter_mut().for_each(|parts| parts.push(format!("F_{{max}} = {load}"))),
+        None => {}
+    }
+    parts.map(|parts| parts.join(", "))
+}
+
+/// Place of each value of a parameter among its different values, in ascending order.
+fn ranks(of: &Varying) -> Vec<usize> {
+    match &of.values {
+        Values::Numbers(numbers) => {
+            let number = |value: &Option<f64>| value.unwrap_or(f64::INFINITY);
+            let mut known: Vec<f64> = numbers.iter().map(number).collect();
+            known.sort_by(f64::total_cmp);
+            known.dedup();
+            numbers.iter().map(|value| known.partition_point(|one| *one < number(value))).collect()
         }
-        let case = cases.iter().position(|id| *id == member.case_id).unwrap_or_default();
-        let load = loads.iter().position(|load| *load == member.max_load).unwrap_or_default();
-        member.colour = if by_load { case_colour(load, 0, 1) } else { case_colour(case, load, loads.len()) };
+        Values::Words(all) => {
+            let known = words(Some(of));
+            all.iter().map(|word| known.partition_point(|one| one < word)).collect()
+        }
     }
 }
 
-/// The words of the horizontal axis, if it has words, each once.
-fn words(differing: &[Varying]) -> Vec<String> {
-    let Some(Values::Words(all)) = differing.first().map(|first| &first.values) else {
+/// Number of different values of a parameter.
+fn count(of: &Varying) -> usize {
+    ranks(of).into_iter().max().map_or(0, |most| most + 1)
+}
+
+/// Colours the members: a colour for each value of what varies, with several parameters for each series, and
+/// for each load where only the load varies. Numbers have colours in their order.
+fn colour(members: &mut [Member], differing: &[Varying]) {
+    let mut loads: Vec<f64> = members.iter().map(|member| member.max_load).collect();
+    loads.sort_by(f64::total_cmp);
+    loads.dedup();
+    let by_series = differing.len() > 1;
+    let word = |member: &Member| match (differing.len(), by_series) {
+        (0, _) => member.max_load.to_string(),
+        (_, true) => format!("{:?}", member.rank),
+        _ => member.case_id.clone(),
+    };
+    let mut known: Vec<String> = Vec::new();
+    for member in &*members {
+        if !known.contains(&word(member)) {
+            known.push(word(member));
+        }
+    }
+    let in_order = match differing {
+        [] => true,
+        [only] | [_, only] => matches!(only.values, Values::Numbers(_)),
+        _ => false,
+    };
+    for member in members {
+        let place = known.iter().position(|of| *of == word(member)).unwrap_or_default();
+        let load = loads.iter().position(|load| *load == member.max_load).unwrap_or_default();
+        let of_loads = if differing.is_empty() { [0, 1] } else { [load, loads.len()] };
+        member.colour = series_colour(place, known.len(), in_order, of_loads);
+    }
+}
+
+/// The words of a parameter, if it has words, each once.
+fn words(of: Option<&Varying>) -> Vec<String> {
+    let Some(Values::Words(all)) = of.map(|of| &of.values) else {
         return Vec::new();
     };
     let mut words = all.clone();

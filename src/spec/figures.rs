@@ -26,7 +26,10 @@ pub(super) const DEFAULT_FONT: &str = "DejaVu Sans";
 pub(super) const LONGEST_FONT: usize = 64;
 
 /// Keys of the table.
-const TAKES: [&str; 3] = ["format", "width_mm", "font"];
+const TAKES: [&str; 4] = ["format", "width_mm", "font", "loads"];
+
+/// Loads of the panels of a sweep.
+pub(super) const LOADS: [&str; 2] = ["largest", "all"];
 
 /// Bounds of the width of a panel without labels at its right.
 pub(super) const WIDTH: Limits = Limits {
@@ -48,15 +51,23 @@ pub struct Figures {
     pub width_mm: f64,
     /// Font family of the SVG files.
     pub font: String,
+    /// Loads in the panels of sweeps of other parameters, of [`LOADS`].
+    pub loads: &'static str,
 }
 
 impl Default for Figures {
     fn default() -> Self {
-        Self { format: FORMATS.to_vec(), width_mm: 88.0, font: DEFAULT_FONT.to_owned() }
+        Self { format: FORMATS.to_vec(), width_mm: 88.0, font: DEFAULT_FONT.to_owned(), loads: LOADS[0] }
     }
 }
 
 impl Figures {
+    /// True if panels of sweeps have all loads.
+    #[must_use]
+    pub fn has_all_loads(&self) -> bool {
+        self.loads == LOADS[1]
+    }
+
     /// The formats that are chosen and that this build writes; SVG if it writes none of them.
     #[must_use]
     pub fn written(&self) -> Vec<&'static str> {
@@ -77,10 +88,11 @@ impl fmt::Display for Figures {
         let formats: Vec<String> = self.format.iter().map(|format| format!("\"{format}\"")).collect();
         write!(
             f,
-            "{{ format = [{}], width_mm = {:?}, font = \"{}\" }}",
+            "{{ format = [{}], width_mm = {:?}, font = \"{}\", loads = \"{}\" }}",
             formats.join(", "),
             self.width_mm,
-            self.font
+            self.font,
+            self.loads
         )
     }
 }
@@ -98,6 +110,7 @@ pub(super) fn figures(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Fi
             "format" => read.format = formats(written, faults)?,
             "width_mm" => read.width_mm = number("figures.width_mm", &WIDTH, written, faults)?,
             "font" => read.font = font(written, faults)?,
+            "loads" => read.loads = word("figures.loads", &LOADS, written, faults)?,
             unknown => {
                 let listed = format!("keys of `figures`: {}", TAKES.join(", "));
                 let help = nearest(unknown, TAKES)

@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::auto::METHODS;
-use super::figures::{FORMATS, Figures, LONGEST_FONT, WIDTH};
+use super::figures::{FORMATS, Figures, LOADS, LONGEST_FONT, WIDTH};
 use super::keys::{KEYS, Key, Kind, Limits, TABLES, words};
 use super::realizations::{DEFAULT, DEFAULT_BOUNDS, LEAST, PRECISION};
 use super::reference::described;
@@ -225,6 +225,10 @@ fn figures() -> Value {
                 "type": "string", "pattern": PLAIN, "minLength": 1, "maxLength": LONGEST_FONT,
                 "default": default.font,
                 "description": "Font family of the SVG files; PNG and PDF files have DejaVu Sans.",
+            },
+            "loads": {
+                "type": "string", "enum": LOADS, "default": default.loads,
+                "description": "Loads in the figures of sweeps of other parameters.",
             },
         },
         "description": "Files of the figures.",

@@ -95,6 +95,7 @@ fn top() -> String {
 | `figures.format` | string or array of strings | | `[\"svg\", \"png\", \"pdf\"]` |
 | `figures.width_mm` | float | {} | `88` |
 | `figures.font` | string | 1 to {LONGEST_FONT} bytes | `\"{DEFAULT_FONT}\"` |
+| `figures.loads` | string | `\"largest\"`, `\"all\"` | `\"largest\"` |
 
 - `name`: Name of the run and of its default output directory.
 - `seed`: Seed of all generated surfaces. The same seed gives the same surfaces.
@@ -114,7 +115,8 @@ fn top() -> String {
            `--features raster`.\n\
            - `figures.width_mm`: Width in millimetres of a panel in PNG and PDF files. Labels next to a\n  \
            panel add to it.\n\
-           - `figures.font`: Font family of the SVG files. PNG and PDF files have DejaVu Sans.\n"
+           - `figures.font`: Font family of the SVG files. PNG and PDF files have DejaVu Sans.\n\
+           - `figures.loads`: Loads in the figures of sweeps of other parameters. Tables have all loads.\n"
 }
 
 /// The table of measured loops.

@@ -209,5 +209,6 @@ fn panels(sides: &[Side], group: &Group, stem: &str) -> Result<Vec<Panel>, Stage
     let labels: Vec<String> = sides.iter().map(|side| side.label.clone()).collect();
     let (cases, curves, realizations) =
         (stats::together(&cases)?, stats::together(&curves)?, stats::together(&realizations)?);
-    Ok(compared(&Tables { cases: &cases, curves: &curves, realizations: &realizations }, &labels, stem)?)
+    let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations, all_loads: true };
+    Ok(compared(&tables, &labels, stem)?)
 }

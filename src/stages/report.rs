@@ -57,7 +57,8 @@ struct Drawings {
 impl Drawings {
     fn of(campaign: &Campaign, standings: &[Standing], statistics: &Statistics) -> Result<Self, StageError> {
         let Statistics { cases, curves, realizations, methods } = statistics;
-        let tables = Tables { cases, curves, realizations };
+        let all_loads = campaign.spec.figures.has_all_loads();
+        let tables = Tables { cases, curves, realizations, all_loads };
         let mut drawn = Vec::new();
         for sweep in sweeps(campaign) {
             for units in Units::ALL {

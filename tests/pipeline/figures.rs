@@ -16,7 +16,7 @@ pub type Result = (f64, f64, f64, f64);
 pub type Made = (Frame, Frame, Frame);
 
 pub fn panels_of((cases, curves, realizations): &Made, sweep: &str) -> std::result::Result<Vec<Panel>, FigureError> {
-    panels(&Tables { cases, curves, realizations }, sweep, Units::Dimensionless)
+    panels(&Tables { cases, curves, realizations, all_loads: false }, sweep, Units::Dimensionless)
 }
 
 pub fn tables(inputs: &[(CaseInput, Result)], realization_count: i32) -> Made {
@@ -159,7 +159,7 @@ fn e2e_magnification_sweep_has_five_panels() {
 #[test]
 fn val_panels_in_si_units() {
     let (cases, curves, realizations) = fig4();
-    let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations };
+    let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations, all_loads: false };
     let panels = panels(&tables, "fig4", Units::Si).unwrap();
     let sorted = |mut numbers: Vec<f64>| {
         numbers.sort_by(f64::total_cmp);
@@ -209,21 +209,56 @@ fn e2e_one_case_one_surface() {
     assert!(drawn[0].1.contains("one surface"));
 }
 
+/// A grid of Hurst exponents and magnifications, two loads.
+fn grid(hursts: &[f64], zetas: &[f64]) -> Made {
+    let mut inputs = Vec::new();
+    for hurst in hursts {
+        for zeta in zetas {
+            let result = (0.25 * hurst * (64.0_f64 / zeta).sqrt(), 6e-4 * hurst, 6e-4 * hurst, 2.5);
+            inputs.push((case(&format!("{hurst}-{zeta}"), "grid", *hurst, *zeta, &[0.004, 0.0071]), result));
+        }
+    }
+    tables(&inputs, 2)
+}
+
+/// The parameter with most values is the axis, the other one the colour; paths have a panel for each value of the axis, at the largest load.
 #[test]
-fn e2e_two_parameters_are_named() {
-    let inputs: Vec<_> = [(0.8, 64.0), (0.8, 128.0), (0.6, 64.0), (0.6, 128.0)]
-        .iter()
-        .map(|(hurst, zeta)| {
-            (
-                case(&format!("{hurst}-{zeta}"), "grid", *hurst, *zeta, &[0.0071]),
-                (0.25 * hurst * (64.0_f64 / zeta).sqrt(), 6e-4 * hurst, 6e-4 * hurst, 2.5),
-            )
-        })
-        .collect();
-    let drawn = draw(&tables(&inputs, 2), "grid");
-    assert!(drawn[1].1.contains("for ζ = 64, 128; H = 0.6, 0.8"));
-    assert_eq!(paths(&drawn[1].1, None), 2);
-    assert!(read(&drawn[0].1).contains("ζ = 64, H = 0.6"));
+fn e2e_two_parameters_are_axis_and_colour() {
+    let made = grid(&[0.8, 0.6, 0.45], &[64.0, 128.0]);
+    let drawn = draw(&made, "grid");
+    let stems: Vec<&str> = drawn.iter().map(|(stem, _)| stem.as_str()).collect();
+    assert_eq!(stems, ["grid_A", "grid_A2", "grid_A3", "grid_B", "grid_C", "grid_C2", "grid_C3", "grid_D", "grid_E"]);
+    let text = read(&drawn[3].1);
+    assert!(text.contains("Hurst exponent H") && text.contains("ζ = 128"), "{text}");
+    assert_eq!(paths(&drawn[3].1, None), 2);
+    assert_eq!((paths(&drawn[0].1, Some("7 4")), paths(&drawn[0].1, None)), (2, 2), "two series at the largest load");
+    assert!(read(&drawn[0].1).contains("H = 0.45") && read(&drawn[2].1).contains("H = 0.8"));
+    assert!(drawn[3].1.contains("for H = 0.45, 0.6, 0.8; ζ = 64, 128"));
+    let panels = panels_of(&made, "grid").unwrap();
+    assert_eq!(panels[0].cases.iter().map(|(label, _)| label.as_str()).collect::<Vec<_>>(), ["ζ = 64", "ζ = 128"]);
+    // A colour is one series in every panel.
+    for panel in &panels {
+        for curve in panel.plot.curves.iter().filter(|curve| !curve.points.is_empty()) {
+            assert!(panel.cases.iter().any(|(label, colour)| *colour == curve.colour && curve.of.contains(label.as_str())), "{}", curve.of);
+        }
+    }
+}
+
+/// Many curves have no bands, a scale of colours, and labels inside the picture; at most six values of the axis have a panel of paths.
+#[test]
+fn e2e_a_large_grid_is_readable() {
+    let made = grid(&[0.4, 0.5, 0.6, 0.7, 0.8], &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0]);
+    let panels = panels_of(&made, "grid").unwrap();
+    let paths: Vec<&Panel> = panels.iter().filter(|panel| panel.name.starts_with('A')).collect();
+    assert_eq!(paths.iter().map(|panel| panel.name.as_str()).collect::<Vec<_>>(), ["A", "A2", "A3", "A4", "A5", "A6"]);
+    assert!(paths[0].caption.contains("6 of 7 values have a panel"), "{}", paths[0].caption);
+    assert!(paths.iter().all(|panel| panel.plot.curves.len() == 10 && panel.plot.curves.iter().all(|curve| !curve.band)));
+    assert_eq!(panels[0].cases.iter().map(|(label, _)| label.as_str()).collect::<Vec<_>>(), ["H = 0.4", "H = 0.5", "H = 0.6", "H = 0.7", "H = 0.8"]);
+    for panel in &panels {
+        let height: f64 = panel.svg.split(" height=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
+        let texts = panel.svg.split("<text ").skip(1).filter_map(|tag| tag.split(" y=\"").nth(1)?.split('"').next()?.parse::<f64>().ok());
+        assert!(texts.into_iter().all(|y| (0.0..height).contains(&y)), "{}", panel.stem);
+    }
 }
 
 #[test]
