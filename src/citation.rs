@@ -1,4 +1,4 @@
-//! What a publication of results cites: the program, and the works whose models it computes.
+//! Works that a publication of results cites: the program, and those whose models it computes.
 
 /// When a work is cited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -52,10 +52,10 @@ impl Panel {
 /// The horizontal axis of B, D and E is the parameter that varies; if only the load reversal varies, it is
 /// the area at the end of loading. If several parameters vary, the one with most values is the axis, the
 /// others are series with a colour each, and A and C have a panel for each value of the axis (`A`, `A2`, …).
-/// Of several loads of such cases the largest is drawn. Lines join only cases that differ in nothing else. A case without finished realizations
-/// has no curve and no point. Error bars and bands are one standard deviation; for quantities that cannot be
-/// negative, they end at 0. Results of fewer than five surfaces have crosses at the single surfaces instead
-/// of bars.
+/// Of several loads of such cases the largest is drawn. Lines join only cases that differ in nothing else. A
+/// case without finished realizations has no curve and no point. Error bars and bands are one standard
+/// deviation; for quantities that cannot be negative, they end at 0. Results of fewer than five surfaces have
+/// crosses at the single surfaces instead of bars.
 ///
 /// A sweep without a finished realization has no panels.
 ///

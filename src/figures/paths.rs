@@ -8,7 +8,7 @@ use super::sweep::{Member, Sweep};
 use super::units::{Quantity, Scales};
 use crate::store::Frame;
 
-/// Curves whose bands can be told apart.
+/// Curves of a plot with bands, at most.
 const MOST_BANDS: usize = 4;
 /// Values of the horizontal axis of the results that have a panel of paths each.
 pub(super) const MOST_FACETS: usize = 6;
@@ -93,7 +93,7 @@ pub(super) fn places(sweep: &Sweep) -> Vec<f64> {
     places
 }
 
-/// Where the paths of a member are.
+/// Table and columns of paths, with their units.
 struct Source<'a> {
     table: &'a Frame,
     column: &'a str,

@@ -110,10 +110,10 @@ impl Sweep {
         Ok(Self { members, differing, many_loads, load_symbol: loads.symbol, axis })
     }
 
-    /// True if several parameters vary: the colour is that of the series, and the panels of paths have one
-    /// value of the horizontal axis each.
+    /// True if several parameters vary, and not together: the colour is that of the series, and the panels of
+    /// paths have one value of the horizontal axis each.
     pub(super) fn has_facets(&self) -> bool {
-        self.differing.len() > 1
+        is_grid(&self.members, &self.differing)
     }
 
     /// True if lines join the results: not between categories.
@@ -210,13 +210,19 @@ fn count(of: &Varying) -> usize {
     ranks(of).into_iter().max().map_or(0, |most| most + 1)
 }
 
+/// True if several parameters vary, and a value of the first one has several cases.
+fn is_grid(members: &[Member], differing: &[Varying]) -> bool {
+    let share = |a: &Member, b: &Member| a.x.total_cmp(&b.x).is_eq() && a.rank != b.rank;
+    differing.len() > 1 && members.iter().any(|a| members.iter().any(|b| share(a, b)))
+}
+
 /// Colours the members: a colour for each value of what varies, with several parameters for each series, and
 /// for each load where only the load varies. Numbers have colours in their order.
 fn colour(members: &mut [Member], differing: &[Varying]) {
     let mut loads: Vec<f64> = members.iter().map(|member| member.max_load).collect();
     loads.sort_by(f64::total_cmp);
     loads.dedup();
-    let by_series = differing.len() > 1;
+    let by_series = is_grid(members, differing);
     let word = |member: &Member| match (differing.len(), by_series) {
         (0, _) => member.max_load.to_string(),
         (_, true) => format!("{:?}", member.rank),
@@ -230,7 +236,11 @@ fn colour(members: &mut [Member], differing: &[Varying]) {
     }
     let in_order = match differing {
         [] => true,
-        [only] | [_, only] => matches!(only.values, Values::Numbers(_)),
+        [only] => matches!(only.values, Values::Numbers(_)),
+        [first, other] => {
+            let coloured = if by_series { other } else { first };
+            matches!(coloured.values, Values::Numbers(_))
+        }
         _ => false,
     };
     for member in members {

@@ -253,7 +253,10 @@ fn e2e_a_large_grid_is_readable() {
     assert_eq!(paths.iter().map(|panel| panel.name.as_str()).collect::<Vec<_>>(), ["A", "A2", "A3", "A4", "A5", "A6"]);
     assert!(paths[0].caption.contains("6 of 7 values have a panel"), "{}", paths[0].caption);
     assert!(paths.iter().all(|panel| panel.plot.curves.len() == 10 && panel.plot.curves.iter().all(|curve| !curve.band)));
-    assert_eq!(panels[0].cases.iter().map(|(label, _)| label.as_str()).collect::<Vec<_>>(), ["H = 0.4", "H = 0.5", "H = 0.6", "H = 0.7", "H = 0.8"]);
+    assert_eq!(
+        panels[0].cases.iter().map(|(label, _)| label.as_str()).collect::<Vec<_>>(),
+        ["H = 0.4", "H = 0.5", "H = 0.6", "H = 0.7", "H = 0.8"]
+    );
     for panel in &panels {
         let height: f64 = panel.svg.split(" height=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
         let texts = panel.svg.split("<text ").skip(1).filter_map(|tag| tag.split(" y=\"").nth(1)?.split('"').next()?.parse::<f64>().ok());

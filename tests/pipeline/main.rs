@@ -6,6 +6,7 @@ mod bench;
 #[cfg(feature = "stats")]
 mod campaign;
 #[cfg(feature = "stats")]
+mod citation;
 mod cli;
 #[cfg(feature = "stats")]
 mod e2e;
