@@ -96,6 +96,17 @@ fn cases(sweep: &Sweep) -> String {
     if parts.is_empty() { String::new() } else { format!(", for {}", parts.join("; ")) }
 }
 
+/// Caption of a panel of the branches of a loop, by the name of the panel.
+pub(super) fn of_branches(name: &str) -> &'static str {
+    match name {
+        "tension" => "Tensile part of the loop, F/(E*A₀) against Δ/h_rms",
+        _ => {
+            "Load of loading less that of unloading at the same mean penetration, over E*A₀; its integral over \
+             Δ/h_rms is the dissipated energy Θ/(E*A₀h_rms)"
+        }
+    }
+}
+
 /// Caption of a panel of a single cycle, by the name of the panel.
 pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
     let text = match name {
@@ -106,6 +117,7 @@ pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
                 of.parameters
             )
         }
+        "hysteresis" | "tension" => of_branches(name).to_owned(),
         "events" => {
             "Energy dissipated by each event against mean penetration; events of negative dissipated energy \
              are not drawn on the logarithmic axis"

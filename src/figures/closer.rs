@@ -6,6 +6,7 @@ use super::captions::of_cycle;
 use super::curve::{Curve, Stroke, XyPlot};
 use super::cycle_loop::{Closer, Landmark, step_of};
 use super::drawing::Drawing;
+use super::hysteresis::of_branches;
 use super::map::map;
 use super::panels::Panel;
 use super::style::{OTHER, RESULT, THEORY, curve, entry, shade};
@@ -36,11 +37,11 @@ pub fn closer(
     let kept = of.landmarks()?;
     let branches = branches(of, step_of(&kept, Landmark::Turning))?;
     let panel = |name: &str, plot: XyPlot| panel(name, of_cycle(name, of), plot);
-    let mut panels = vec![
-        panel("loop", of_loop(of.steps, of.max_load)?),
-        panel("events", events(of, &branches)?),
-        panel("avalanches", avalanches(of, &branches)?),
-    ];
+    let whole = of_loop(of.steps, of.max_load)?;
+    let branches_of_loop = of_branches(&whole);
+    let mut panels = vec![panel("loop", whole)];
+    panels.extend(branches_of_loop.into_iter().map(|(name, plot)| panel(name, plot)));
+    panels.extend([panel("events", events(of, &branches)?), panel("avalanches", avalanches(of, &branches)?)]);
     let styles = [(Landmark::Turning, RESULT, Stroke::Solid), (Landmark::PullOff, OTHER, Stroke::Dashed)];
     let end = |(landmark, hue, stroke)| step_of(&kept, landmark).map(|step| (landmark, step, hue, stroke));
     let ends: Vec<End> = styles.into_iter().filter_map(end).collect();

@@ -4,6 +4,7 @@ use super::closer::of_loop;
 use super::curve::{Curve, Note, Stroke, XyPlot};
 use super::drawing::Drawing;
 use super::elements_map::map;
+use super::hysteresis::{of_branches, on_both};
 use super::panels::Panel;
 use super::style::{RESULT, THEORY, curve, entry, shade};
 use super::{FigureError, captions};
@@ -30,7 +31,7 @@ pub struct ElementsLoop<'a> {
 ///
 /// # Errors
 /// If a table lacks a column.
-pub fn elements_loop(of: &ElementsLoop<'_>) -> Result<(Panel, Option<Drawing>), FigureError> {
+pub fn elements_loop(of: &ElementsLoop<'_>) -> Result<(Vec<Panel>, Option<Drawing>), FigureError> {
     let plot = XyPlot { stem: NAME.to_owned(), ..marked(of_loop(of.steps, of.max_load)?) };
     let caption = format!(
         "Normal force F/(E*A₀) against mean penetration Δ/h_rms up to the load reversal and back by boundary \
@@ -38,8 +39,21 @@ pub fn elements_loop(of: &ElementsLoop<'_>) -> Result<(Panel, Option<Drawing>), 
         of.parameters,
         captions::data(NAME)
     );
-    let panel = Panel::alone(NAME, caption, plot);
-    Ok((panel, of.maps.map(|maps| map(of.parameters, of.steps, maps)).transpose()?))
+    let more = of_branches(&plot).into_iter().map(|(name, plot)| of_elements(name, of.parameters, plot));
+    let panels = more.collect::<Vec<Panel>>();
+    let panels = std::iter::once(Panel::alone(NAME, caption, plot)).chain(panels).collect();
+    Ok((panels, of.maps.map(|maps| map(of.parameters, of.steps, maps)).transpose()?))
+}
+
+/// A further panel of a loop.
+fn of_elements(name: &str, parameters: &str, plot: XyPlot) -> Panel {
+    let name = format!("elements_{name}");
+    let caption = format!(
+        "{} by boundary elements, for {parameters}.{}",
+        captions::of_branches(name.trim_start_matches("elements_")),
+        captions::data(&name)
+    );
+    Panel::alone(&name, caption, XyPlot { stem: name.clone(), ..plot })
 }
 
 /// The plot of a loop with its area and its pull-off force.
@@ -67,32 +81,10 @@ fn marked(mut plot: XyPlot) -> XyPlot {
 /// The area between loading and unloading. Before the first contact and after the last separation the load is
 /// zero.
 fn area(loading: &[(f64, f64)], unloading: &[(f64, f64)]) -> Curve {
-    let ordered = |points: &[(f64, f64)]| {
-        let mut points = points.to_vec();
-        points.sort_by(|u, v| u.0.total_cmp(&v.0));
-        points
-    };
-    let (up, down) = (ordered(loading), ordered(unloading));
-    let mut at: Vec<f64> = up.iter().chain(&down).map(|point| point.0).collect();
-    at.sort_by(f64::total_cmp);
-    at.dedup();
-    let ends: Vec<(f64, f64, f64)> =
-        at.into_iter().map(|x| (x, between(&up, x), between(&down, x))).collect();
+    let ends = on_both(loading, unloading);
     let points = ends.iter().map(|(x, up, down)| (*x, 0.5 * (up + down))).collect();
     let errors = ends.iter().map(|(_, up, down)| Some(0.5 * (up - down).abs())).collect();
     Curve { errors, band: true, ..curve("area", "", points, shade(RESULT, 0, 1), Stroke::Area) }
-}
-
-/// The load at a penetration, linear between the points of a branch, 0 before the first one and that of the
-/// last one after it.
-fn between(points: &[(f64, f64)], x: f64) -> f64 {
-    let next = points.partition_point(|point| point.0 < x);
-    match (next.checked_sub(1).and_then(|before| points.get(before)), points.get(next)) {
-        (_, Some(point)) if point.0 == x => point.1,
-        (Some(from), Some(to)) => from.1 + (to.1 - from.1) * (x - from.0) / (to.0 - from.0),
-        (Some(last), None) => last.1,
-        (None, _) => 0.0,
-    }
 }
 
 #[cfg(test)]

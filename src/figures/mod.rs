@@ -17,6 +17,7 @@ mod elements;
 mod elements_map;
 mod experiment;
 mod formats;
+mod hysteresis;
 mod key;
 mod map;
 mod marks;

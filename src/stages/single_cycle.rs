@@ -88,7 +88,7 @@ fn of_elements(
     let folder = campaign.cycle_dir(unit);
     let steps = read_table(&folder.join(format!("{}.parquet", schema::STEPS.name)), &schema::STEPS)?;
     let maps = read_loop_maps(&folder.join("maps.h5"), max_load)?;
-    let (panel, map) = elements_loop(&ElementsLoop {
+    let (panels, map) = elements_loop(&ElementsLoop {
         max_load,
         parameters: &parameters,
         steps: &steps,
@@ -101,7 +101,7 @@ fn of_elements(
         files: "The table `events` of the cycle holds all events, the table `contacts` the regions of \
              contact, the file `maps.h5` gap and pressure.",
         parameters,
-        panels: vec![panel],
+        panels,
         map,
     }))
 }

@@ -376,7 +376,7 @@ fn e2e_boundary_elements_alone_have_figures_of_their_loop_and_contact() {
     let bench = Bench::new(&alone());
     assert_eq!(code(&bench.verb("run", &[])), 0);
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
-    for stem in ["elements_loop", "elements_map"] {
+    for stem in ["elements_loop", "elements_map", "elements_hysteresis", "elements_tension"] {
         let svg = fs::read_to_string(bench.out().join(format!("figures/{stem}.svg"))).unwrap();
         // A cell of the map is no element of its own: 64 x 64 points fit in far fewer elements and bytes.
         assert!(svg.len() < 200_000 && svg.matches('<').count() < 600, "{stem}: {} bytes", svg.len());
@@ -404,6 +404,13 @@ fn e2e_boundary_elements_alone_have_figures_of_their_loop_and_contact() {
     let force = statistics(&bench, &schema::REALIZATIONS).f64("pull_off_load").unwrap();
     assert!(force.iter().any(|force| *force == -of("pull_off")[1]), "{force:?}");
     assert!(of("area").is_empty());
+    // The integral of the difference of the branches is Θ of that load, but for the jumps inside steps.
+    let x = panels.f64("x").unwrap();
+    let difference: Vec<(f64, f64)> = (0..y.len()).filter(|k| names[*k] == "elements_hysteresis").map(|k| (x[k], y[k])).collect();
+    let area: f64 = difference.windows(2).map(|pair| 0.5 * (pair[0].1 + pair[1].1) * (pair[1].0 - pair[0].0)).sum();
+    let lost = loss[0].max(loss[1]);
+    assert!((area / lost - 1.0).abs() < 0.1, "{area} for {lost}");
+    assert!((0..y.len()).filter(|k| names[*k] == "elements_tension").any(|k| y[k] == of("pull_off")[1]));
     // Nothing of asperities is said of such a run, neither as a warning nor in the page: the rest are names of models and of columns.
     let cautions = losses.text("caution").unwrap();
     assert!(
