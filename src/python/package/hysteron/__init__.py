@@ -9,8 +9,9 @@ analytical models and the power spectrum for NumPy arrays. The module `plot` dra
 
 from . import jkr, plot, spectrum, theory
 from ._hysteron import __version__
-from ._program import Failed, FailedCases, Interrupted, run, take
+from ._program import Failed, FailedCases, Interrupted, take
 from ._run import Description, Maps, Run, describe, load
+from ._start import run
 
 import_surface = take
 HysteronError = Failed

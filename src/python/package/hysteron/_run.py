@@ -16,7 +16,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from . import _program
+from . import _labelled, _program
 
 #: Columns of the table of means that a notebook shows.
 _SHOWN = ("max_load", "done_count", "area_at_max_load_mean", "pull_off_load_mean", "loss_mean", "loss_sd", "caution")
@@ -110,6 +110,10 @@ class Maps(NamedTuple):
         """True at the grid points in contact; shape (n, N, N)."""
         touches: NDArray[np.bool_] = (self.pressure_pa > 0) | (self.gap_m < self.contact_gap_m)
         return touches
+
+    def to_xarray(self) -> Any:
+        """The maps as `xarray.Dataset` with the dimensions step, x and y. Requires xarray."""
+        return _labelled.maps(self)
 
 
 def _h5py(path: Path) -> Any:
@@ -261,6 +265,22 @@ class Run(Mapping[str, pa.Table]):
     def avalanches(self) -> pa.Table:
         """Table of avalanches: one row per avalanche of every cycle."""
         return self["statistics/avalanches"]
+
+    def results(self, realizations: bool = False) -> Any:
+        """The table `cases` as `xarray.Dataset` with the dimensions case_id and max_load. Requires xarray.
+
+        Parameters
+        ----------
+        realizations : bool
+            True: the table `realizations`, with the dimension realization too.
+        """
+        table = self.realizations if realizations else self.cases
+        return _labelled.results(table, describe(table))
+
+    def loop(self, id: str, max_load: float | None = None) -> Any:
+        """The loop of the cycle `id` at a load reversal, by default the largest, as `xarray.Dataset` along the dimension step. Requires xarray."""
+        table = self.steps(id)
+        return _labelled.loop(table, describe(table), max_load)
 
     def steps(self, id: str) -> pa.Table:
         """Output steps of the cycle `id`: loading, and unloading from each load reversal."""
