@@ -79,7 +79,7 @@ has a verdict on each finding, with the numbers behind it.";
 /// The commands by task, in the order of the help.
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Simulate", &["init", "run", "plan", "status", "retry", "submit"]),
-    ("Results", &["report", "compare", "findings", "show", "export"]),
+    ("Results", &["report", "compare", "findings", "show", "cite", "export"]),
     ("Measurements", &["import"]),
     ("Maintenance", &["verify", "explain", "gc"]),
     ("Single stages", &["generate", "extract", "cycle", "aggregate"]),
