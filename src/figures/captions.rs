@@ -24,19 +24,22 @@ pub(super) fn of_sweep(
         'B' => format!("Pull-off force {}", symbol(Quantity::PullOff)),
         'C' => format!("Mean penetration {} against normal force {load}", symbol(Quantity::Penetration)),
         'D' => format!("Dissipated energy {loss}, with the estimates of Deng and Kesari"),
-        _ => format!("Dissipated energy {loss} of the events of each branch"),
+        'E' => format!("Dissipated energy {loss} of the events of each branch"),
+        _ => "Avalanches per surface with at least a dissipated energy, over all surfaces; loading dashed, \
+              unloading solid"
+            .to_owned(),
     };
     let mut parts = vec![format!("{what}{}; {surfaces}", cases(sweep))];
-    if matches!(letter, 'A' | 'C') {
-        if !plot.title.is_empty() {
-            parts.push(format!("at {}", plot.title));
-            let values = places(sweep).len();
-            if values > MOST_FACETS {
-                parts.push(format!(
-                    "{MOST_FACETS} of {values} values have a panel, and all are in the table curves"
-                ));
-            }
+    if !plot.title.is_empty() {
+        parts.push(format!("at {}", plot.title));
+        let values = places(sweep).len();
+        if values > MOST_FACETS {
+            parts.push(format!(
+                "{MOST_FACETS} of {values} values have a panel, and all are in the table curves"
+            ));
         }
+    }
+    if matches!(letter, 'A' | 'C') {
         parts.push("loading dashed, unloading solid".to_owned());
         if surfaces.starts_with("mean") {
             parts.push(

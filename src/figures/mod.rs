@@ -29,6 +29,7 @@ mod plot;
 mod raster;
 mod results;
 mod sensitivity;
+mod sizes;
 mod spectra;
 mod style;
 mod sweep;

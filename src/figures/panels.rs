@@ -7,6 +7,7 @@ use super::markup::described;
 use super::paths::paths;
 use super::plot::{plot_xy, width_beside};
 use super::results::{Measured, Predicted, results};
+use super::sizes::sizes;
 use super::sweep::{Member, Sweep, Tables};
 use super::units::{Quantity, Scales, Units};
 use crate::store::Frame;
@@ -47,7 +48,7 @@ impl Panel {
 
 /// Draws the panels of one sweep: `<sweep>_A` area over load, `<sweep>_B` pull-off force, `<sweep>_C`
 /// penetration over load, `<sweep>_D` dissipated energy, with the prediction of Deng and Kesari, `<sweep>_E`
-/// its fraction on each branch; in other units with an ending.
+/// its fraction on each branch, `<sweep>_F` the sizes of avalanches; in other units with an ending.
 ///
 /// The horizontal axis of B, D and E is the parameter that varies; if only the load reversal varies, it is
 /// the area at the end of loading. If several parameters vary, the one with most values is the axis, the
@@ -174,27 +175,26 @@ fn plots(
         branch("dissipated_unloading", "unloading", Stroke::Solid),
         branch("dissipated_loading", "loading", Stroke::Dashed),
     ];
-    let of_path = |letter: &str, column: &str, quantity| -> Result<Vec<(String, XyPlot)>, FigureError> {
-        let numbered =
-            |(k, plot)| (if k == 0 { letter.to_owned() } else { format!("{letter}{}", k + 1) }, plot);
-        Ok(paths(tables.curves, found, column, (quantity, scales))?
-            .into_iter()
-            .enumerate()
-            .map(numbered)
-            .collect())
-    };
+    let of_path = |column: &str, quantity| paths(tables.curves, found, column, (quantity, scales));
     let of_results = |letter: &str, quantity, measured: &[Measured], theories: &[Predicted]| {
         results(tables, found, (quantity, scales), measured, theories)
             .map(|plot| vec![(letter.to_owned(), plot)])
     };
     Ok([
-        of_path("A", "area", Quantity::Area)?,
+        numbered("A", of_path("area", Quantity::Area)?),
         of_results("B", Quantity::PullOff, &[computed("pull_off_load")], &[])?,
-        of_path("C", "penetration", Quantity::Penetration)?,
+        numbered("C", of_path("penetration", Quantity::Penetration)?),
         of_results("D", Quantity::Loss, &[computed("loss")], &theories)?,
         of_results("E", Quantity::Loss, &branches, &[])?,
+        numbered("F", sizes(tables, found, scales.units())?),
     ]
     .concat())
+}
+
+/// Plots of one letter with names: `A`, `A2`, …
+fn numbered(letter: &str, plots: Vec<XyPlot>) -> Vec<(String, XyPlot)> {
+    let name = |k| if k == 0 { letter.to_owned() } else { format!("{letter}{}", k + 1) };
+    plots.into_iter().enumerate().map(|(k, plot)| (name(k), plot)).collect()
 }
 
 /// Number of surfaces of the means of a sweep.

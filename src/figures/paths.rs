@@ -33,21 +33,13 @@ pub(super) fn paths(
             }
         }
         curves.reverse();
-        let mut notes = Vec::new();
-        let (beside, every) = (!sweep.differing.is_empty(), members.len().div_ceil(MOST_NOTES));
-        for (at, member) in members.iter().enumerate() {
-            let unloading = source.curve(member, "unloading", members.len())?;
-            if let Some(end) = unloading.points.first()
-                && members.len() > 1
-                && at % every == 0
-            {
-                let text = if sweep.has_facets() { &member.series } else { &member.label };
-                notes.push(Note { at: *end, text: text.clone(), beside });
-            }
-            curves.push(unloading);
-        }
-        let title = if sweep.has_facets() { members[0].facet.clone() } else { String::new() };
-        Ok((title, curves, notes))
+        let unloading: Vec<Curve> = members
+            .iter()
+            .map(|member| source.curve(member, "unloading", members.len()))
+            .collect::<Result<_, _>>()?;
+        let notes = noted(sweep, members.iter().copied(), &unloading);
+        curves.extend(unloading);
+        Ok((facet_title(sweep, members), curves, notes))
     };
     let parts: Vec<Parts> = groups.iter().map(of_group).collect::<Result<_, _>>()?;
     let all = || parts.iter().flat_map(|(_, curves, _)| curves);
@@ -68,12 +60,33 @@ pub(super) fn paths(
     Ok(parts.into_iter().map(plot).collect())
 }
 
+/// Names of members at the ends of their curves, as far as they have room.
+pub(super) fn noted<'a>(
+    sweep: &Sweep,
+    members: impl IntoIterator<Item = &'a Member>,
+    curves: &[Curve],
+) -> Vec<Note> {
+    let (beside, every) = (!sweep.differing.is_empty(), curves.len().div_ceil(MOST_NOTES));
+    let named =
+        members.into_iter().zip(curves).enumerate().filter(|(at, _)| curves.len() > 1 && at % every == 0);
+    let note = |(_, (member, curve)): (usize, (&Member, &Curve))| {
+        let text = if sweep.has_facets() { &member.series } else { &member.label };
+        curve.points.first().map(|end| Note { at: *end, text: text.clone(), beside })
+    };
+    named.filter_map(note).collect()
+}
+
+/// Title of the plot of some members: the value that they share.
+pub(super) fn facet_title(sweep: &Sweep, members: &[&Member]) -> String {
+    members.first().filter(|_| sweep.has_facets()).map_or_else(String::new, |member| member.facet.clone())
+}
+
 /// Title, curves and notes of a plot.
-type Parts = (String, Vec<Curve>, Vec<Note>);
+pub(super) type Parts = (String, Vec<Curve>, Vec<Note>);
 
 /// Members by value of the first parameter where several vary; of many values the first, the last and some
 /// between.
-fn facets(sweep: &Sweep) -> Vec<Vec<&Member>> {
+pub(super) fn facets(sweep: &Sweep) -> Vec<Vec<&Member>> {
     if !sweep.has_facets() {
         return vec![sweep.members.iter().collect()];
     }
@@ -138,7 +151,7 @@ pub(super) fn unnamed([x, y]: [Axis; 2], curves: Vec<Curve>, key: Vec<KeyEntry>)
 }
 
 /// Entries of the strokes and of the bands.
-fn key_of(curves: &[Curve]) -> Vec<KeyEntry> {
+pub(super) fn key_of(curves: &[Curve]) -> Vec<KeyEntry> {
     let mut key = vec![
         entry("loading", NEUTRAL, Some(Stroke::Dashed), false),
         entry("unloading", NEUTRAL, Some(Stroke::Solid), false),

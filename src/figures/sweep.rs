@@ -15,6 +15,8 @@ pub struct Tables<'a> {
     pub curves: &'a Frame,
     /// The table `realizations`.
     pub realizations: &'a Frame,
+    /// The table `avalanches`, for the panel of their sizes.
+    pub avalanches: Option<&'a Frame>,
     /// True if panels of sweeps of other parameters have all loads, and not the largest of each case alone.
     pub all_loads: bool,
 }

@@ -61,6 +61,10 @@ impl<'a> Scales<'a> {
         })
     }
 
+    pub(super) fn units(&self) -> Units {
+        self.units
+    }
+
     /// Column of the tables `cases`, without its ending, and `realizations` that has a dimensionless result
     /// in the units of the panel, if there is one, and the factor of its values.
     pub(super) fn column(&self, result: &str) -> Option<(&'static str, f64)> {

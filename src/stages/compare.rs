@@ -209,6 +209,12 @@ fn panels(sides: &[Side], group: &Group, stem: &str) -> Result<Vec<Panel>, Stage
     let labels: Vec<String> = sides.iter().map(|side| side.label.clone()).collect();
     let (cases, curves, realizations) =
         (stats::together(&cases)?, stats::together(&curves)?, stats::together(&realizations)?);
-    let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations, all_loads: true };
+    let tables = Tables {
+        cases: &cases,
+        curves: &curves,
+        realizations: &realizations,
+        avalanches: None,
+        all_loads: true,
+    };
     Ok(compared(&tables, &labels, stem)?)
 }

@@ -27,6 +27,7 @@ struct Statistics {
     curves: Frame,
     realizations: Frame,
     methods: Frame,
+    avalanches: Frame,
 }
 
 impl Statistics {
@@ -38,6 +39,7 @@ impl Statistics {
             curves: read(&schema::CURVES)?,
             realizations: read(&schema::REALIZATIONS)?,
             methods: read(&schema::METHODS)?,
+            avalanches: read(&schema::AVALANCHES)?,
         })
     }
 }
@@ -56,9 +58,9 @@ struct Drawings {
 
 impl Drawings {
     fn of(campaign: &Campaign, standings: &[Standing], statistics: &Statistics) -> Result<Self, StageError> {
-        let Statistics { cases, curves, realizations, methods } = statistics;
+        let Statistics { cases, curves, realizations, methods, avalanches } = statistics;
         let all_loads = campaign.spec.figures.has_all_loads();
-        let tables = Tables { cases, curves, realizations, all_loads };
+        let tables = Tables { cases, curves, realizations, avalanches: Some(avalanches), all_loads };
         let mut drawn = Vec::new();
         for sweep in sweeps(campaign) {
             for units in Units::ALL {

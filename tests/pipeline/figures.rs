@@ -16,7 +16,7 @@ pub type Result = (f64, f64, f64, f64);
 pub type Made = (Frame, Frame, Frame);
 
 pub fn panels_of((cases, curves, realizations): &Made, sweep: &str) -> std::result::Result<Vec<Panel>, FigureError> {
-    panels(&Tables { cases, curves, realizations, all_loads: false }, sweep, Units::Dimensionless)
+    panels(&Tables { cases, curves, realizations, avalanches: None, all_loads: false }, sweep, Units::Dimensionless)
 }
 
 pub fn tables(inputs: &[(CaseInput, Result)], realization_count: i32) -> Made {
@@ -159,7 +159,7 @@ fn e2e_magnification_sweep_has_five_panels() {
 #[test]
 fn val_panels_in_si_units() {
     let (cases, curves, realizations) = fig4();
-    let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations, all_loads: false };
+    let tables = Tables { cases: &cases, curves: &curves, realizations: &realizations, avalanches: None, all_loads: false };
     let panels = panels(&tables, "fig4", Units::Si).unwrap();
     let sorted = |mut numbers: Vec<f64>| {
         numbers.sort_by(f64::total_cmp);

@@ -31,8 +31,9 @@ fn e2e_every_figure_is_there_in_the_formats_of_the_build() {
     let folder = bench.out().join("figures");
     let stems: BTreeSet<String> =
         fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned()).collect();
-    let closer = ["avalanches", "events", "hysteresis", "loads", "loop", "map", "radii", "spectrum", "summits", "tension"].map(|name| format!("closer_{name}"));
-    let panels = ["A", "B", "C", "D", "E"].into_iter().flat_map(|panel| [format!("zeta_{panel}"), format!("zeta_{panel}_SI")]);
+    let closer = ["avalanches", "events", "hysteresis", "loads", "loop", "map", "radii", "spectrum", "summits", "tension"]
+        .map(|name| format!("closer_{name}"));
+    let panels = ["A", "B", "C", "D", "E", "F"].into_iter().flat_map(|panel| [format!("zeta_{panel}"), format!("zeta_{panel}_SI")]);
     let wanted = closer.into_iter().chain(panels);
     let wanted: BTreeSet<String> = wanted.chain(["works_1", "works_2"].map(str::to_owned)).collect();
     assert_eq!(stems, wanted);
