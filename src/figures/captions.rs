@@ -104,8 +104,8 @@ pub(super) fn of_branches(name: &str) -> &'static str {
     match name {
         "tension" => "Tensile part of the loop, F/(E*A₀) against Δ/h_rms",
         _ => {
-            "Load of loading less that of unloading at the same mean penetration, over E*A₀; its integral over \
-             Δ/h_rms is the dissipated energy Θ/(E*A₀h_rms)"
+            "Load of loading less that of unloading at the same mean penetration, over E*A₀; its integral \
+             over Δ/h_rms is the dissipated energy Θ/(E*A₀h_rms)"
         }
     }
 }
