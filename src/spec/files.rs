@@ -262,7 +262,10 @@ fn join_copies(spec: &mut Spec) {
         moved.push(cases.add(&sweeps, params));
     }
     spec.cases = cases.list;
-    spec.auto_cases.iter_mut().for_each(|place| *place = moved.get(*place).copied().unwrap_or(*place));
+    let unread = spec.unread.iter_mut().map(|point| &mut point.case);
+    for place in spec.auto_cases.iter_mut().chain(unread) {
+        *place = moved.get(*place).copied().unwrap_or(*place);
+    }
 }
 
 /// The names of the files of a surface.

@@ -69,7 +69,7 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     let path = text.split(" = ").next().unwrap_or_default();
     let place = path.split_once('.').and_then(|(table, name)| find(table, name));
     for (key, span, written) in entries(root.get_ref()) {
-        if matches!(key, "sweep" | "files" | "auto_methods") || TABLES.contains(&key) && !path.contains('.') {
+        if matches!(key, "sweep" | "files" | "auto_methods" | "scan_sides_m") || TABLES.contains(&key) && !path.contains('.') {
             let help =
                 "it takes name, seed, realizations, and keys of tables such as surface.hurst".to_owned();
             faults.add(&span, format!("{OPTION} cannot set `{key}`"), help);
@@ -94,6 +94,9 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     }
     // Other values may lead to another choice.
     draft.auto_methods.clear();
+    if path.starts_with("surface.") || path.starts_with("cycle.") {
+        draft.scan_sides_m.clear();
+    }
     // The hashes are of the files that the spec names.
     if ["surface.file", "surface.files"].contains(&path) {
         draft.files.clear();

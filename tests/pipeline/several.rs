@@ -322,7 +322,7 @@ fn reg_options_of_import_are_refused_with_help() {
 }
 
 /// Scans of different size: figures in SI units have the columns of the tables, those without a common scale are left out, and so is the table over the cut-off
-/// wavelength. A size that contradicts the file is an error, and a force needs the sizes.
+/// wavelength. A size that contradicts the file is an error, and so is one force on scans of two sizes.
 #[test]
 fn reg_scans_of_different_size_in_si_units() {
     let bench = bench();
@@ -354,5 +354,5 @@ fn reg_scans_of_different_size_in_si_units() {
     let force = spec(files).replace("[cycle]\nmax_load = [0.004]", "[cycle]\nmax_force_n = [1e-6]");
     fs::write(at("spec.toml"), force).unwrap();
     let refused = hysteron(&bench, &["plan", "spec.toml"]);
-    assert!(code(&refused) == 2 && stderr(&refused).contains("both sides of the scan"), "{}", stderr(&refused));
+    assert!(code(&refused) == 2 && stderr(&refused).contains("one force is two loads F/(E* A0)"), "{}", stderr(&refused));
 }
