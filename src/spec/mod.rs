@@ -255,7 +255,7 @@ impl Spec {
     /// Every fault of the first faulty setting, or else of the text with the settings.
     pub fn parse_with(text: &str, file: &str, settings: &[String]) -> Result<Self, SpecErrors> {
         let spec = Self::parse_known(text, file, settings, &Known::default())?;
-        sides::of_scans(&spec, text, file, UNREAD.side_m).map_err(|errors| errors.with(settings))?;
+        sides::of_scans(&spec, (text, file, settings), UNREAD.side_m)?;
         Ok(spec)
     }
 
@@ -264,7 +264,7 @@ impl Spec {
         let mut faults = fault::Faults::new(text, file);
         let mut draft = walk::document(text, &mut faults);
         if let Some(draft) = &mut draft {
-            settings::apply(settings, draft)?;
+            faults = faults.with(settings::apply(settings, draft)?);
             if !known.methods.is_empty() {
                 draft.auto_methods.clone_from(&known.methods);
             }
@@ -317,7 +317,7 @@ impl Spec {
         let mut known = Known::default();
         let mut spec = read(&known)?;
         if !spec.unread.is_empty() {
-            known.sides_m = sides::of_scans(&spec, &text, &file, reader.side_m).map_err(with_settings)?;
+            known.sides_m = sides::of_scans(&spec, (&text, &file, settings), reader.side_m)?;
             spec = read(&known)?;
         }
         if spec.auto_methods.contains(&Method::Auto) {

@@ -6,24 +6,26 @@ use toml::de::DeTable;
 
 use super::SpecErrors;
 use super::entries::entries;
-use super::fault::{Faults, NOWHERE};
+use super::fault::{Faults, OPTION, in_setting};
 use super::keys::{TABLES, find};
 use super::sweep::SweepDraft;
 use super::walk::{Draft, Origin, enter};
 use crate::text::quoted;
 
-/// The option, as errors name it.
-const OPTION: &str = "--set";
-
-/// Puts the settings into a draft, in their order.
-pub(super) fn apply(settings: &[String], draft: &mut Draft) -> Result<(), SpecErrors> {
-    for setting in settings {
+/// Puts the settings into a draft, in their order, and gives them as TOML.
+pub(super) fn apply(settings: &[String], draft: &mut Draft) -> Result<Vec<String>, SpecErrors> {
+    for (number, setting) in settings.iter().enumerate() {
         let text = document(setting)?;
         let mut faults = Faults::new(&text, OPTION);
-        set(&text, draft, &mut faults);
+        set(number, &text, draft, &mut faults);
         faults.finish(Some(()))?;
     }
-    Ok(())
+    Ok(documents(settings))
+}
+
+/// Settings as TOML.
+pub(super) fn documents(settings: &[String]) -> Vec<String> {
+    settings.iter().map(|setting| document(setting).unwrap_or_else(|_| setting.clone())).collect()
 }
 
 /// A setting as TOML. A value that is not TOML is a text without its quotes.
@@ -55,8 +57,8 @@ fn document(setting: &str) -> Result<String, SpecErrors> {
     Ok(if is_toml { plain } else { format!("{key} = {}", quoted(value)) })
 }
 
-/// Puts one setting into a draft.
-fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
+/// Puts one setting into a draft, by its number.
+fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     let (root, broken) = DeTable::parse_recoverable(text);
     if let Some(error) = broken.first() {
         faults.add(
@@ -86,11 +88,11 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
         enter((key, span, written), draft, faults);
     }
     if path == "realizations" {
-        draft.realizations_at = Some(NOWHERE);
+        draft.realizations_at = draft.realizations_at.take().map(|at| in_setting(number, &at));
     }
     let Some(place) = place else { return };
-    if matches!(draft.origins[place], Origin::Written(_)) {
-        draft.origins[place] = Origin::Written(NOWHERE);
+    if let Origin::Written(at) = &mut draft.origins[place] {
+        *at = in_setting(number, at);
     }
     // Other values may lead to another choice.
     draft.auto_methods.clear();

@@ -10,6 +10,7 @@ use std::ops::Range;
 use super::fault::Faults;
 use super::keys::Limits;
 use super::number::number;
+use super::settings::documents;
 use super::values::Values;
 use super::written::{Written, array};
 use super::{Spec, SpecErrors};
@@ -80,7 +81,7 @@ impl Sides {
 
     /// Notes a point whose scan must be read.
     pub(super) fn note(&mut self, case: usize, at: Option<Range<usize>>) {
-        self.unread.push(Unread { case, at: at.unwrap_or(super::fault::NOWHERE) });
+        self.unread.push(Unread { case, at: at.unwrap_or(0..0) });
     }
 
     /// Checks the number of listed sides.
@@ -117,11 +118,10 @@ pub(super) fn sides(value: &Written<'_>, faults: &mut Faults<'_>) -> Vec<f64> {
 /// The sides of the points whose scans have not been read.
 pub(super) fn of_scans(
     spec: &Spec,
-    text: &str,
-    file: &str,
+    (text, file, settings): (&str, &str, &[String]),
     reader: SideReader<'_>,
 ) -> Result<Vec<f64>, SpecErrors> {
-    let mut faults = Faults::new(text, file);
+    let mut faults = Faults::new(text, file).with(documents(settings));
     let mut known: HashMap<String, Option<f64>> = HashMap::new();
     let mut sides = Vec::with_capacity(spec.unread.len());
     for Unread { case, at } in &spec.unread {
@@ -134,7 +134,7 @@ pub(super) fn of_scans(
         });
         sides.extend(*side);
     }
-    faults.finish(Some(collapsed(sides)))
+    faults.finish(Some(collapsed(sides))).map_err(|errors| errors.with(settings))
 }
 
 /// The side that all scans of a surface have \[m\]: the smallest one.
