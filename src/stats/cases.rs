@@ -105,12 +105,9 @@ pub fn fewer_surfaces(cases: &Frame, column: &str, row: usize) -> Result<Option<
     if cases.table().column(&name).is_none() {
         return Ok(None);
     }
-    let counts = match cases.column(&name)? {
-        ColumnData::I64(counts) => counts.get(row).copied().flatten(),
-        _ => None,
-    };
+    let count = cases.i64_or_null(&name)?.get(row).copied().flatten();
     let done = cases.i64("done_count")?.get(row).copied().unwrap_or_default();
-    Ok(counts.filter(|count| *count < done).map(|count| [count, done]))
+    Ok(count.filter(|count| *count < done).map(|count| [count, done]))
 }
 
 /// The columns of the table `realizations` that the table `cases` says something of.

@@ -59,6 +59,9 @@ fn e2e_newtons_take_the_size_of_the_scan() {
     // The side is a product of 64 and 1e-7, rounded.
     assert!((of("max_load") / 0.004 - 1.0).abs() < 1e-12 && (of("max_load_n") / 0.16384 - 1.0).abs() < 1e-12);
     assert!((of("length_m") / 6.4e-6 - 1.0).abs() < 1e-12);
+    // Captions have the load as it is given.
+    let report = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    assert!(report.contains("coalescence = \"merge\", F_max = 0.1638 N"), "{report}");
     let resolved = fs::read_to_string(bench.out().join("campaign.toml")).unwrap();
     assert!(resolved.contains("scan_sides_m = [6.4") && resolved.contains("max_force_n = [0.16384]"), "{resolved}");
     let plan = stdout(&bench.verb("plan", &[]));
