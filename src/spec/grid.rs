@@ -16,9 +16,9 @@ use super::number::short;
 use super::probe::check_contact;
 use super::scans::{check_measured, realizations as scan_realizations};
 use super::shape::{blamed, check_spectrum};
+use super::sides::Sides;
 use super::sweep::{AxisDraft, SweepDraft};
 use super::values::Values;
-use super::sides::Sides;
 use super::walk::{Draft, Origin, written};
 use crate::model::{CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource};
 

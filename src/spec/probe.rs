@@ -6,9 +6,7 @@ use super::keys::{Limits, find};
 use super::number::short;
 use super::values::Values;
 use super::walk::{Origin, written};
-use crate::model::{
-    CaseParams, Coalescence, Control, FarField, Material, Method, Probe, SPHERE_SHARE,
-};
+use crate::model::{CaseParams, Coalescence, Control, FarField, Material, Method, Probe, SPHERE_SHARE};
 use crate::physics::jkr::Asperity;
 
 /// Contact radius of a smooth probe by JKR at a load \[N\]; nothing at a tension above the pull-off force.

@@ -71,7 +71,9 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     let path = text.split(" = ").next().unwrap_or_default();
     let place = path.split_once('.').and_then(|(table, name)| find(table, name));
     for (key, span, written) in entries(root.get_ref()) {
-        if matches!(key, "sweep" | "files" | "auto_methods" | "scan_sides_m") || TABLES.contains(&key) && !path.contains('.') {
+        if matches!(key, "sweep" | "files" | "auto_methods" | "scan_sides_m")
+            || TABLES.contains(&key) && !path.contains('.')
+        {
             let help =
                 "it takes name, seed, realizations, and keys of tables such as surface.hurst".to_owned();
             faults.add(&span, format!("{OPTION} cannot set `{key}`"), help);

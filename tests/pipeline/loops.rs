@@ -161,7 +161,9 @@ fn e2e_several_loops_are_imported_at_once() {
     }
     let some = hysteron(folder.path(), &["import", "a.csv", "bad.csv", "-n"]);
     assert_eq!(code(&some), 3, "{}", stderr(&some));
-    assert!(stdout(&some).contains("a.csv\n") && stdout(&some).contains("warning: left out: ") && stdout(&some).contains("no load reversal"));
+    assert!(
+        stdout(&some).contains("a.csv\n") && stdout(&some).contains("warning: left out: ") && stdout(&some).contains("no load reversal")
+    );
     for (files, words) in [
         (&["bad.csv", "bad.csv"][..], "two loops"),
         (&["a.csv", "more/a.csv"], "has the name of an earlier file"),

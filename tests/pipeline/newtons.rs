@@ -135,7 +135,11 @@ fn e2e_newtons_on_scans_of_different_size() {
 fn e2e_newtons_with_sizes_and_without() {
     let bench = bench(&[("scan.txt", 64, 48)]);
     let force = "max_force_n = [0.1]";
-    refused(&bench, &spec("file = \"scan.txt\"", force), &["needs the size of the scan \"", "no pixel size in the file", "spec.toml:13:15"]);
+    refused(
+        &bench,
+        &spec("file = \"scan.txt\"", force),
+        &["needs the size of the scan \"", "no pixel size in the file", "spec.toml:13:15"],
+    );
     let load = |text: &str| {
         let made = verb(&bench, "generate", text);
         assert_eq!(code(&made), 0, "{}", stderr(&made));

@@ -134,13 +134,15 @@ fn law_means_of_fewer_surfaces_say_how_many() {
     let count = |name: &str| frame.i64_or_null(name).unwrap()[0];
     assert_eq!((count("work_approach_j_m2_count"), count("work_retraction_j_m2_count")), (Some(2), Some(1)));
     assert_eq!(count("work_loss_j_m2_count"), None);
-    let [approach, retraction] =
-        ["work_approach_j_m2", "work_retraction_j_m2"].map(|name| fewer_surfaces(&frame, name, 0).unwrap());
+    let [approach, retraction] = ["work_approach_j_m2", "work_retraction_j_m2"].map(|name| fewer_surfaces(&frame, name, 0).unwrap());
     assert_eq!((approach, retraction, fewer_surfaces(&frame, "loss", 0).unwrap()), (None, Some([1, 2]), None));
     let text = summary(&frame, None, Shown::All).unwrap();
     let line = text.lines().find(|line| line.starts_with("  surfaces")).unwrap();
     assert!(line.ends_with(" 1/2") && line.matches('/').count() == 1, "{text}");
-    assert!(text.contains("surfaces: those in the mean, of the finished ones") && text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    assert!(
+        text.contains("surfaces: those in the mean, of the finished ones") && text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
     let both = table(&[&works(0.04.into()), &works(0.05.into())], 0.1, of_probe);
     assert!(!summary(&both, None, Shown::All).unwrap().contains("surfaces"));
 }

@@ -44,7 +44,12 @@ fn val_faults_of_a_setting_name_the_option() {
     told(SMALL, "surface={}", &["--set cannot set `surface`"]);
     told(SPEC, "surface.magnification=8", &["every sweep of the spec sets `surface.magnification`", "--set has no effect"]);
     // What only two values show has its place in the setting; the settings are named.
-    let rms = ["must be less than `surface.length_m`", "--> --set:1:24\n", " 1 | surface.rms_height_m = 0.01\n", "|                        ^^^^\n"];
+    let rms = [
+        "must be less than `surface.length_m`",
+        "--> --set:1:24\n",
+        " 1 | surface.rms_height_m = 0.01\n",
+        "|                        ^^^^\n",
+    ];
     told(SMALL, "surface.rms_height_m=0.01", &rms);
     told(SMALL, "surface.rms_height_m=0.01", &["read with --set surface.rms_height_m=0.01"]);
     let said = with(SMALL, &["seed=3", "surface.length_m=1e-7", "name=\"other\""]).unwrap_err();

@@ -61,7 +61,8 @@ pub(super) fn import_all(asked: &ImportArguments) -> Result<u8, Fault> {
         }
     }
     if answers.is_empty() {
-        let (problem, help) = left.first().and_then(|(_, why)| why.split_once("\nhelp: ")).unwrap_or_default();
+        let (problem, help) =
+            left.first().and_then(|(_, why)| why.split_once("\nhelp: ")).unwrap_or_default();
         return Err(failed(format!("no loop of {} files was read: {problem}\nhelp: {help}", outs.len())));
     }
     if asked.json {
