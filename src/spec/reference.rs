@@ -58,9 +58,9 @@ methods: one for each case, in the order of the sweeps. Leave it out of your own
 
 ## `scan_sides_m`
 
-The program writes this line to `campaign.toml` of a run with `max_force_n` on a measured surface: the
-side of the square \\[m\\], read from the scan. It has one number, or one for each case in the order
-of the sweeps. Leave it out of your own specs.
+The program writes this line to `campaign.toml` of a run with `max_force_n` on a measured surface:
+the side of the square \\[m\\], read from the scan. It has one number, or one for each case in the
+order of the sweeps. Leave it out of your own specs.
 
 ## `[files]`
 

@@ -61,7 +61,7 @@ fn e2e_newtons_take_the_size_of_the_scan() {
     assert!((of("length_m") / 6.4e-6 - 1.0).abs() < 1e-12);
     // Captions have the load as it is given.
     let report = fs::read_to_string(bench.out().join("report.html")).unwrap();
-    assert!(report.contains("coalescence = \"merge\", F_max = 0.1638 N"), "{report}");
+    assert!(report.contains("coalescence = &quot;merge&quot;, F<sub>max</sub> = 0.1638 N"));
     let resolved = fs::read_to_string(bench.out().join("campaign.toml")).unwrap();
     assert!(resolved.contains("scan_sides_m = [6.4") && resolved.contains("max_force_n = [0.16384]"), "{resolved}");
     let plan = stdout(&bench.verb("plan", &[]));
