@@ -147,7 +147,7 @@ pub(super) struct ExportArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
-    /// Measured surface or loop; several surfaces, or a zip container: one sample
+    /// Measured surface or loop; several scans or a zip container: one sample
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<PathBuf>,
     /// File to write [default: <name of FILE>.h5]; of several files a folder

@@ -62,13 +62,17 @@ pub(super) fn files(
     found
 }
 
-/// Refuses the hash of a file that no case names, and gives the others.
+/// Refuses the hash of a file that no case names, and gives the others; none after a fault, since of a sweep
+/// with a fault the cases are unknown.
 pub(super) fn named(
     files: BTreeMap<String, (String, Range<usize>)>,
     cases: &[Case],
     experiment: Option<&Experiment>,
     faults: &mut Faults<'_>,
 ) -> BTreeMap<String, String> {
+    if faults.count() > 0 {
+        return BTreeMap::new();
+    }
     let loops = experiment.into_iter().flat_map(|of| &of.loops).map(String::as_str);
     let of_cases = cases.iter().flat_map(|case| case.params.surface.files()).map(String::as_str);
     let wanted: HashSet<&str> = of_cases.chain(loops).collect();

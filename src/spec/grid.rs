@@ -1,7 +1,7 @@
 //! From a draft to the cases: sweeps multiplied out, equal cases joined, and what no single value shows
 //! checked.
 
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
 use toml::Spanned;
@@ -41,15 +41,13 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     let mut add =
         |mut values: Values, origins: &[Origin], swept: &[usize], sweep: &str, faults: &mut Faults<'_>| {
             complete(&mut values, origins);
-            let is_unread = sides.set(&mut values, &draft.files, draft.are_sides_read);
+            sides.set(&mut values, &draft.files, draft.are_sides_read);
             let is_auto = choices.choose(&mut values);
             let params = values.case();
             check(&params, &values, (origins, swept), faults);
             let case = cases.add(&[sweep.to_owned()], params);
             auto_cases.extend(Some(case).filter(|_| is_auto));
-            if is_unread {
-                sides.note(case, written(find("cycle", "max_force_n"), origins));
-            }
+            sides.note(case, written(find("cycle", "max_force_n"), origins));
         };
     if sweeps.is_empty() {
         add(base.clone(), &origins, &[], BASE, faults);
@@ -66,12 +64,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
         }
     }
     complete(&mut base, &origins);
-    // Of a sweep with a fault the cases are unknown.
-    let files = if faults.count() == 0 {
-        named(draft.files, &cases.list, draft.experiment.as_ref(), faults)
-    } else {
-        BTreeMap::new()
-    };
+    let files = named(draft.files, &cases.list, draft.experiment.as_ref(), faults);
     let at = draft.realizations_at.as_ref();
     let realizations = scan_realizations(&cases.list, draft.realizations, at, faults);
     bound_tasks(&cases.list, realizations, at.or(read.first().map(|sweep| &sweep.span)), faults);

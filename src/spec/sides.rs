@@ -53,8 +53,10 @@ pub(super) struct Sides {
     given: Vec<f64>,
     /// Number of points so far.
     count: usize,
+    /// True if the side of the last point is not known.
+    is_unread: bool,
     /// Points whose side is not known.
-    pub(super) unread: Vec<Unread>,
+    unread: Vec<Unread>,
 }
 
 impl Sides {
@@ -63,11 +65,12 @@ impl Sides {
         Self { given, ..Self::default() }
     }
 
-    /// Sets the side of a point; true if its scan must be read. Sides of a list hold for the files whose
-    /// checksums the spec has.
-    pub(super) fn set<T>(&mut self, values: &mut Values, files: &BTreeMap<String, T>, is_read: bool) -> bool {
+    /// Sets the side of a point, if it is known. Sides of a list hold for the files whose checksums the spec
+    /// has.
+    pub(super) fn set<T>(&mut self, values: &mut Values, files: &BTreeMap<String, T>, is_read: bool) {
+        self.is_unread = false;
         if !values.needs_side() {
-            return false;
+            return;
         }
         let is_known = is_read || values.measured.names().iter().all(|name| files.contains_key(name));
         let side = match self.given.as_slice() {
@@ -76,12 +79,13 @@ impl Sides {
         };
         values.side_m = side.filter(|_| is_known);
         self.count += 1;
-        values.side_m.is_none()
+        self.is_unread = values.side_m.is_none();
     }
 
-    /// Notes a point whose scan must be read.
+    /// Notes the case of the point that was set, and the place of its loads, if its scan must be read.
     pub(super) fn note(&mut self, case: usize, at: Option<Range<usize>>) {
-        self.unread.push(Unread { case, at: at.unwrap_or(0..0) });
+        let point = Unread { case, at: at.unwrap_or(0..0) };
+        self.unread.extend(Some(point).filter(|_| self.is_unread));
     }
 
     /// Checks the number of listed sides.
