@@ -259,7 +259,7 @@ impl Spec {
         Ok(spec)
     }
 
-    /// Reads a spec from its text, with what is known of its scans.
+    /// Reads a spec from its text, with the results of its scans.
     fn parse_known(text: &str, file: &str, settings: &[String], known: &Known) -> Result<Self, SpecErrors> {
         let mut faults = fault::Faults::new(text, file);
         let mut draft = walk::document(text, &mut faults);
@@ -379,7 +379,7 @@ impl Spec {
     }
 }
 
-/// What is known of the scans of a spec.
+/// Results of the scans of a spec, as far as they are read.
 #[derive(Default)]
 struct Known {
     /// Choices of `method = "auto"`.

@@ -1,8 +1,8 @@
 //! Sides of measured surfaces, by which loads in newtons are divided.
 //!
 //! A load in newtons is `F/(E* A0)` with the area `A0` of the square of its case. The square of a scan is
-//! known from the file, unless the spec states both sizes. [`super::Spec::read_choosing`] reads the files, and
-//! the resolved spec lists the sides: one of each point, or one of all.
+//! known from the file, unless the spec states both sizes. [`super::Spec::read_choosing`] reads the files,
+//! and the resolved spec lists the sides: one of each point, or one of all.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -159,7 +159,7 @@ fn common_side(surface: &MeasuredSurface, reader: SideReader<'_>) -> Result<f64,
         "one force is two loads F/(E* A0): the sides of the scans of a case are from {least:.4e} m to \
          {largest:.4e} m"
     );
-    let help = "give cycle.max_pressure_pa = F/A0, scans of equal size, or each scan as a case of a [[sweep]] \
-                over surface.file";
+    let help = "give cycle.max_pressure_pa = F/A0, scans of equal size, or each scan as a case of a \
+                [[sweep]] over surface.file";
     Err((problem, help.to_owned()))
 }

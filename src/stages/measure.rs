@@ -133,8 +133,8 @@ fn plausible(params: &MeasuredSurface, spacing_m: [f64; 2]) -> Result<[f64; 2], 
         return Ok(spacing_m);
     };
     let why = format!(
-        "its points are {apart:e} m apart\nhelp: check the unit and the pixel size; a scan has points 1e-12 m \
-         to 0.1 m apart"
+        "its points are {apart:e} m apart\nhelp: check the unit and the pixel size; a scan has points 1e-12 \
+         m to 0.1 m apart"
     );
     Err(refused(Path::new(&params.file), &why))
 }

@@ -33,7 +33,7 @@ pub(super) fn import(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> 
     Ok(0)
 }
 
-/// Evaluates several loops, each with a table of its own, and names those that fail.
+/// Evaluates several loops, each with a table of its own, and names the loops that fail.
 pub(super) fn import_all(asked: &ImportArguments) -> Result<u8, Fault> {
     let others: Vec<String> =
         asked.files.iter().filter(|file| !is_meant(asked, file)).map(|file| shown(file)).collect();
