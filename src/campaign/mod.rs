@@ -71,7 +71,7 @@ impl Stage {
             Self::Extract => 3,
             // 18: status and cause of each event, estimates of the cycle.
             Self::Cycle => 18,
-            Self::Aggregate => 12,
+            Self::Aggregate => 13,
             Self::Report => 15,
         }
     }

@@ -147,10 +147,10 @@ pub(super) struct ExportArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
-    /// Measured surface; several, or a zip container, for one sample
+    /// Measured surface or loop; several scans or a zip container: one sample
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<PathBuf>,
-    /// File to write [default: <name of FILE>.h5]; of several scans a folder
+    /// File to write [default: <name of FILE>.h5]; of several files a folder
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
     /// Dataset (HDF5) or variable (NetCDF) of a file with several

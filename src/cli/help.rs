@@ -66,7 +66,8 @@ spec. A spec may also name the original file, with the same options as keys.
 
 A text with columns of force and displacement is a loop: its pull-off force,
 dissipated energy, works of adhesion and modulus are printed with intervals,
-and its points are written as <name of FILE>_loop.parquet.";
+and its points are written as <name of FILE>_loop.parquet. Several loops give
+one such table each, in the folder of --out.";
 
 /// The description of `findings`.
 pub(super) const FINDINGS: &str = "\

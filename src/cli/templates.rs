@@ -8,23 +8,29 @@ pub(super) enum Template {
     Scan,
     Spectrum,
     Probe,
+    Loop,
     Full,
 }
 
 impl Template {
     /// All templates, each with its name and its purpose.
-    pub(super) const ALL: [(Self, &'static str, &'static str); 6] = [
+    pub(super) const ALL: [(Self, &'static str, &'static str); 7] = [
         (Self::Quickstart, "quickstart", "a soft and a stiff contact, generated surfaces: runs in seconds"),
         (Self::Sweep, "sweep", "parameter sweeps around a reference case"),
         (Self::Scan, "scan", "a measured surface"),
         (Self::Spectrum, "spectrum", "a tabulated power spectral density, with an example psd.csv"),
         (Self::Probe, "probe", "a spherical probe, in newtons and metres: runs in seconds"),
+        (Self::Loop, "loop", "a measured loop next to a simulated one, with an example loop.csv"),
         (Self::Full, "full", "every key with its default"),
     ];
 
     /// Name and text of a file that the spec names.
     pub(super) fn example(self) -> Option<(&'static str, &'static str)> {
-        (self == Self::Spectrum).then_some(("psd.csv", include_str!("templates/psd.csv")))
+        match self {
+            Self::Spectrum => Some(("psd.csv", include_str!("templates/psd.csv"))),
+            Self::Loop => Some(("loop.csv", include_str!("../../data/examples/probe_loop.csv"))),
+            _ => None,
+        }
     }
 
     /// The text of the spec.
@@ -35,6 +41,7 @@ impl Template {
             Self::Scan => include_str!("templates/scan.toml"),
             Self::Spectrum => include_str!("templates/spectrum.toml"),
             Self::Probe => include_str!("templates/probe.toml"),
+            Self::Loop => include_str!("templates/loop.toml"),
             Self::Full => include_str!("templates/full.toml"),
         }
     }

@@ -3,7 +3,7 @@
 use super::cases::Cases;
 use super::layout::{heading, prose, wide};
 use super::numbers::{Scale, Shown, scaled, shown};
-use crate::stats::{Difference, FEW, Listed, StatsError, difference_of, singles};
+use crate::stats::{Difference, FEW, Listed, StatsError, difference_of, fewer_surfaces, singles};
 use maud::{Markup, html};
 
 /// Heading, column of the table `cases` without its ending, and true if the quantity cannot be negative.
@@ -167,6 +167,9 @@ fn result(
                 " " small { "[" @if is_cut(low) { "0†" } @else { (text(low)) } ", " (text(high)) "]" }
             }
             _ => {}
+        }
+        @if let Some([count, done]) = fewer_surfaces(cases.frame, column, row)? {
+            " " small { (count) " of " (done) " surfaces" }
         }
     })
 }

@@ -389,6 +389,19 @@ const COUNTS: &[Column] = &[
     text("caution", "Codes of all warnings of the row by severity, joined by +; empty without warnings"),
 ];
 
+/// Numbers of realizations behind means that not every finished realization has.
+const MEAN_COUNTS: &[Column] = &[
+    count("work_approach_j_m2_count", "Realizations in the mean of work_approach_j_m2: those with a JKR fit")
+        .or_null(),
+    count(
+        "work_retraction_j_m2_count",
+        "Realizations in the mean of work_retraction_j_m2: those with a JKR fit",
+    )
+    .or_null(),
+    count("work_pull_off_j_m2_count", "Realizations in the mean of work_pull_off_j_m2").or_null(),
+    count("work_loss_j_m2_count", "Realizations in the mean of work_loss_j_m2").or_null(),
+];
+
 const SPREAD_COLUMNS: [Column; 4 * SPREADS.len()] = join(SPREADS);
 const PART_SPREAD_COLUMNS: [Column; 4 * PART_SPREADS.len()] = join(PART_SPREADS);
 const VALIDITY_COLUMNS: [Column; 2 * VALIDITY.len()] = join(VALIDITY);
@@ -400,6 +413,7 @@ static CASE_COLUMNS: [Column;
         + SPREAD_COLUMNS.len()
         + PART_SPREAD_COLUMNS.len()
         + VALIDITY_COLUMNS.len()
+        + MEAN_COUNTS.len()
         + COUNTS.len()] = join(&[
     CASE,
     &PARAMETER_COLUMNS,
@@ -407,6 +421,7 @@ static CASE_COLUMNS: [Column;
     &SPREAD_COLUMNS,
     &PART_SPREAD_COLUMNS,
     &VALIDITY_COLUMNS,
+    MEAN_COUNTS,
     COUNTS,
 ]);
 

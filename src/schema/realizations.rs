@@ -349,8 +349,8 @@ const FURTHER: &[Column] = &[
         "elements_per_wavelength",
         "1",
         "Grid points of boundary elements per shortest wavelength, of a \
-         measured surface that of its shortest octave with 10 % of the mean square Laplacian; null for \
-         asperities",
+         measured surface that of its shortest octave with 10 % of the mean square Laplacian; 12 per JKR \
+         radius of a probe at zero penetration count as 16; null for asperities",
     )
     .or_null(),
     real(

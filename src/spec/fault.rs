@@ -25,7 +25,7 @@ pub struct Fault {
     pub message: String,
     /// Recommended action.
     pub help: Option<String>,
-    /// Position; `None` if the file could not be read, or if the value is from the command line.
+    /// Position in the file or in a setting of the command line; `None` if the file could not be read.
     pub place: Option<Place>,
 }
 
@@ -40,6 +40,9 @@ pub struct Place {
     pub excerpt: String,
     /// Carets below the excerpt.
     pub carets: String,
+    /// True if the text is a setting of the command line.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub is_setting: bool,
 }
 
 impl SpecErrors {
@@ -104,7 +107,8 @@ impl fmt::Display for SpecErrors {
             match &fault.place {
                 None => writeln!(out, "{pad}--> {}", self.file)?,
                 Some(place) => {
-                    writeln!(out, "{pad}--> {}:{}:{}", self.file, place.line, place.column)?;
+                    let file = if place.is_setting { OPTION } else { &self.file };
+                    writeln!(out, "{pad}--> {file}:{}:{}", place.line, place.column)?;
                     writeln!(out, "{pad} |")?;
                     writeln!(out, " {line} | {}", place.excerpt)?;
                     writeln!(out, "{pad} | {}", place.carets)?;
@@ -124,8 +128,19 @@ impl fmt::Display for SpecErrors {
     }
 }
 
-/// The place of a value that is not in the text: one of the command line.
-pub(super) const NOWHERE: Range<usize> = usize::MAX..usize::MAX;
+/// The option of settings, as errors name it.
+pub(super) const OPTION: &str = "--set";
+
+/// Places from which those in settings begin, and places for each setting: more than an argument of a
+/// command may have.
+const SETTINGS: usize = usize::MAX / 2;
+const STRIDE: usize = 1 << 20;
+
+/// A place in a setting, by its number.
+pub(super) fn in_setting(number: usize, span: &Range<usize>) -> Range<usize> {
+    let at = |place: usize| SETTINGS.saturating_add(number.saturating_mul(STRIDE)).saturating_add(place);
+    at(span.start)..at(span.end)
+}
 
 /// Faults that are kept and shown; the others are counted.
 const MOST: usize = 20;
@@ -168,6 +183,7 @@ impl Place {
             column: column + 1,
             excerpt: format!("{lead}{excerpt}{tail}"),
             carets: format!("{}{pad}{}", if from > 0 { " " } else { "" }, "^".repeat(width)),
+            is_setting: false,
         }
     }
 }
@@ -197,6 +213,8 @@ pub(super) struct Faults<'t> {
     file: String,
     /// Starts of the lines.
     starts: Vec<usize>,
+    /// Settings as TOML.
+    settings: Vec<String>,
     found: Vec<(Range<usize>, Fault)>,
     /// Hashes of all faults, so that each is counted once.
     seen: HashSet<u64>,
@@ -210,10 +228,26 @@ impl<'t> Faults<'t> {
             text,
             file: file.to_owned(),
             starts: line_starts(text),
+            settings: Vec::new(),
             found: Vec::new(),
             seen: HashSet::new(),
             more: 0,
         }
+    }
+
+    /// With the settings that the text was read with, as TOML.
+    pub(super) fn with(self, settings: Vec<String>) -> Self {
+        Self { settings, ..self }
+    }
+
+    /// The place of a range of bytes in the text or in a setting.
+    fn place(&self, span: &Range<usize>) -> Option<Place> {
+        let Some(at) = span.start.checked_sub(SETTINGS) else {
+            return Some(Place::new(self.text, &self.starts, span));
+        };
+        let text = self.settings.get(at / STRIDE)?;
+        let own = at % STRIDE..at % STRIDE + span.len();
+        Some(Place { is_setting: true, ..Place::new(text, &line_starts(text), &own) })
     }
 
     /// Adds a fault; a second one with the same words at the same place says nothing new.
@@ -227,7 +261,7 @@ impl<'t> Faults<'t> {
             self.more += 1;
             return;
         }
-        let place = (*span != NOWHERE).then(|| Place::new(self.text, &self.starts, span));
+        let place = self.place(span);
         self.found.push((span.clone(), Fault { message, help: help.into(), place }));
     }
 

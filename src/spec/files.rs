@@ -62,13 +62,17 @@ pub(super) fn files(
     found
 }
 
-/// Refuses the hash of a file that no case names, and gives the others.
+/// Refuses the hash of a file that no case names, and gives the others; none after a fault, since of a sweep
+/// with a fault the cases are unknown.
 pub(super) fn named(
     files: BTreeMap<String, (String, Range<usize>)>,
     cases: &[Case],
     experiment: Option<&Experiment>,
     faults: &mut Faults<'_>,
 ) -> BTreeMap<String, String> {
+    if faults.count() > 0 {
+        return BTreeMap::new();
+    }
     let loops = experiment.into_iter().flat_map(|of| &of.loops).map(String::as_str);
     let of_cases = cases.iter().flat_map(|case| case.params.surface.files()).map(String::as_str);
     let wanted: HashSet<&str> = of_cases.chain(loops).collect();
@@ -262,7 +266,10 @@ fn join_copies(spec: &mut Spec) {
         moved.push(cases.add(&sweeps, params));
     }
     spec.cases = cases.list;
-    spec.auto_cases.iter_mut().for_each(|place| *place = moved.get(*place).copied().unwrap_or(*place));
+    let unread = spec.unread.iter_mut().map(|point| &mut point.case);
+    for place in spec.auto_cases.iter_mut().chain(unread) {
+        *place = moved.get(*place).copied().unwrap_or(*place);
+    }
 }
 
 /// The names of the files of a surface.

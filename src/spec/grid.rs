@@ -1,7 +1,7 @@
 //! From a draft to the cases: sweeps multiplied out, equal cases joined, and what no single value shows
 //! checked.
 
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
 use toml::Spanned;
@@ -16,9 +16,10 @@ use super::number::short;
 use super::probe::check_contact;
 use super::scans::{check_measured, realizations as scan_realizations};
 use super::shape::{blamed, check_spectrum};
+use super::sides::Sides;
 use super::sweep::{AxisDraft, SweepDraft};
 use super::values::Values;
-use super::walk::{Draft, Origin};
+use super::walk::{Draft, Origin, written};
 use crate::model::{CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource};
 
 use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
@@ -36,13 +37,17 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     }
     let mut cases = Cases::default();
     let (mut choices, mut auto_cases) = (Choices::of(draft.auto_methods), Vec::new());
+    let mut sides = Sides::of(draft.scan_sides_m);
     let mut add =
         |mut values: Values, origins: &[Origin], swept: &[usize], sweep: &str, faults: &mut Faults<'_>| {
             complete(&mut values, origins);
+            sides.set(&mut values, &draft.files, draft.are_sides_read);
             let is_auto = choices.choose(&mut values);
             let params = values.case();
             check(&params, &values, (origins, swept), faults);
-            auto_cases.extend(Some(cases.add(&[sweep.to_owned()], params)).filter(|_| is_auto));
+            let case = cases.add(&[sweep.to_owned()], params);
+            auto_cases.extend(Some(case).filter(|_| is_auto));
+            sides.note(case, written(find("cycle", "max_force_n"), origins));
         };
     if sweeps.is_empty() {
         add(base.clone(), &origins, &[], BASE, faults);
@@ -59,20 +64,17 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
         }
     }
     complete(&mut base, &origins);
-    // Of a sweep with a fault the cases are unknown.
-    let files = if faults.count() == 0 {
-        named(draft.files, &cases.list, draft.experiment.as_ref(), faults)
-    } else {
-        BTreeMap::new()
-    };
+    let files = named(draft.files, &cases.list, draft.experiment.as_ref(), faults);
     let at = draft.realizations_at.as_ref();
     let realizations = scan_realizations(&cases.list, draft.realizations, at, faults);
     bound_tasks(&cases.list, realizations, at.or(read.first().map(|sweep| &sweep.span)), faults);
     choices.check(draft.auto_at.as_ref(), faults);
+    sides.check(draft.sides_at.as_ref(), faults);
     let mut sweeps: Vec<Sweep> = read.into_iter().map(sweep).collect();
     let auto_methods = choices.settle(&mut base, &mut sweeps);
     // Of cases that are all chosen the places are of no use.
     auto_cases.retain(|_| auto_methods.contains(&Method::Auto));
+    let (scan_sides_m, unread) = sides.settle();
     Some(Spec {
         name: draft.name?,
         seed: draft.seed,
@@ -84,6 +86,8 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
         sweeps,
         auto_methods,
         auto_cases,
+        scan_sides_m,
+        unread,
         files,
         absolute_files: BTreeSet::new(),
     })

@@ -92,6 +92,11 @@ pub fn json_schema() -> String {
         json!({ "type": "array", "items": chosen, "description": "Methods that method = \"auto\" chose, case \
              by case; written by the program." }),
     );
+    properties.insert(
+        super::sides::KEY,
+        json!({ "type": "array", "items": number(&super::sides::LIMITS), "description": "Sides of the scans \
+             with a load in newtons \\[m\\], case by case; written by the program." }),
+    );
     let schema = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Spec of hysteron",

@@ -363,8 +363,8 @@ pub(super) static KEYS: &[Key] = &[
         note: "maximum output step of Δ/h_rms; default 0.01; 1e-5 gives about 500 000 steps per branch",
     }),
     key!(cycle.contacts in cycle.contacts, "", "Steps at which contact spots are stored."; word KeptContacts),
-    key!(cycle.max_force_n in max_force_n, "F_max", "Load reversals in newtons, instead of `max_load`. Of a \
-         measured surface, `size_m` must be given."; Kind::Numbers(Limits {
+    key!(cycle.max_force_n in max_force_n, "F_max", "Load reversals in newtons, instead of `max_load`. The \
+         size of a scan is read from its file."; Kind::Numbers(Limits {
         low: 0.0, above: true, high: 1e6, unit: " N", unit_name: "newtons",
         slip: Some((1e-6, "micronewtons")), note: "F_max, maximum load",
     }, 64), |loads: &Vec<f64>| Value::Numbers(loads.clone()), Numbers(loads) => Some(loads.clone())),

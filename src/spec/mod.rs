@@ -24,6 +24,7 @@ mod reference;
 mod scans;
 mod settings;
 mod shape;
+mod sides;
 mod sweep;
 mod top;
 mod value;
@@ -54,6 +55,7 @@ pub use keys::{GENERATED, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_LOADS, REPLACE
 pub use probe::{contact_radius_m, probe_refusal};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
+pub use sides::SideReader;
 pub use values::Values;
 
 /// Limits of specs.
@@ -175,6 +177,12 @@ pub struct Spec {
     /// Places in [`Self::cases`] of these points, until all are chosen.
     #[serde(skip)]
     auto_cases: Vec<usize>,
+    /// Sides of the scans with a load in newtons \[m\]: one of all points with such a load, or of each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub scan_sides_m: Vec<f64>,
+    /// Points whose scans have not been read for their sides.
+    #[serde(skip)]
+    unread: Vec<sides::Unread>,
     /// BLAKE3 of the files of measured surfaces and loops, by the names by which they were found.
     pub files: BTreeMap<String, String>,
     /// Files that the spec names by absolute paths.
@@ -246,22 +254,23 @@ impl Spec {
     /// # Errors
     /// Every fault of the first faulty setting, or else of the text with the settings.
     pub fn parse_with(text: &str, file: &str, settings: &[String]) -> Result<Self, SpecErrors> {
-        Self::parse_chosen(text, file, settings, Vec::new())
+        let spec = Self::parse_known(text, file, settings, &Known::default())?;
+        sides::of_scans(&spec, (text, file, settings), UNREAD.side_m)?;
+        Ok(spec)
     }
 
-    /// Reads a spec from its text, with the choices of `method = "auto"`, if they are known.
-    fn parse_chosen(
-        text: &str,
-        file: &str,
-        settings: &[String],
-        chosen: Vec<Method>,
-    ) -> Result<Self, SpecErrors> {
+    /// Reads a spec from its text, with the results of its scans.
+    fn parse_known(text: &str, file: &str, settings: &[String], known: &Known) -> Result<Self, SpecErrors> {
         let mut faults = fault::Faults::new(text, file);
         let mut draft = walk::document(text, &mut faults);
         if let Some(draft) = &mut draft {
-            settings::apply(settings, draft)?;
-            if !chosen.is_empty() {
-                draft.auto_methods = chosen;
+            faults = faults.with(settings::apply(settings, draft)?);
+            if !known.methods.is_empty() {
+                draft.auto_methods.clone_from(&known.methods);
+            }
+            if !known.sides_m.is_empty() {
+                draft.scan_sides_m.clone_from(&known.sides_m);
+                draft.are_sides_read = true;
             }
         }
         let spec = draft.and_then(|draft| grid::expand(draft, &mut faults));
@@ -284,61 +293,38 @@ impl Spec {
     /// # Errors
     /// As these two.
     pub fn read_with(path: impl AsRef<Path>, settings: &[String]) -> Result<Self, SpecErrors> {
-        Self::read_choosing(path, settings, &|_| {
-            Err(("it is not read here".to_owned(), "write the method".to_owned()))
-        })
+        Self::read_choosing(path, settings, &UNREAD)
     }
 
-    /// Reads a spec from a file as [`Self::read_with`]. The chooser reads the scan of a case with
-    /// `method = "auto"`.
+    /// Reads a spec from a file as [`Self::read_with`]. The reader reads the scan of a case with
+    /// `method = "auto"`, or with a load in newtons and no size in the spec.
     ///
     /// # Errors
-    /// As [`Self::read_with`], and errors of the chooser.
+    /// As [`Self::read_with`], and errors of the reader.
     pub fn read_choosing(
         path: impl AsRef<Path>,
         settings: &[String],
-        chooser: Chooser<'_>,
+        reader: &ScanReader<'_>,
     ) -> Result<Self, SpecErrors> {
         let path = path.as_ref();
-        let file = path.display().to_string();
-        // Windows answers "access denied" for a folder; the question is cheap and the answer is the same
-        // everywhere.
-        if path.is_dir() {
-            return Err(SpecErrors::unreadable(&file, "it is a directory, not a TOML file"));
+        let (file, text) = (path.display().to_string(), text_of(path)?);
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let with_settings = |errors: SpecErrors| errors.with(settings);
+        let read = |known: &Known| {
+            let spec = Self::parse_known(&text, &file, settings, known)?;
+            files::digested(spec, &text, &file, folder).map_err(with_settings)
+        };
+        let mut known = Known::default();
+        let mut spec = read(&known)?;
+        if !spec.unread.is_empty() {
+            known.sides_m = sides::of_scans(&spec, (&text, &file, settings), reader.side_m)?;
+            spec = read(&known)?;
         }
-        let mut bytes = Vec::new();
-        // One byte above the maximum shows that a file is too long, also where a pipe has no length.
-        let read =
-            std::fs::File::open(path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut bytes));
-        match read {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                return Err(SpecErrors::unreadable(&file, "no such file"));
-            }
-            Err(error) => return Err(SpecErrors::unreadable(&file, &error.to_string())),
-            Ok(length) if length as u64 > MAX_BYTES => {
-                return Err(SpecErrors::unreadable(
-                    &file,
-                    &format!("it is longer than {} MiB", MAX_BYTES >> 20),
-                ));
-            }
-            Ok(_) => {}
+        if spec.auto_methods.contains(&Method::Auto) {
+            known.methods = auto::chosen(&spec, &text, &file, reader.method).map_err(with_settings)?;
+            spec = read(&known)?;
         }
-        match std::str::from_utf8(&bytes) {
-            Ok(text) => {
-                let folder = path.parent().unwrap_or(Path::new(""));
-                let found = |spec: Self| {
-                    files::digested(spec, text, &file, folder).map_err(|errors| errors.with(settings))
-                };
-                let spec = found(Self::parse_with(text, &file, settings)?)?;
-                if !spec.auto_methods.contains(&Method::Auto) {
-                    return Ok(spec);
-                }
-                let methods =
-                    auto::chosen(&spec, text, &file, chooser).map_err(|errors| errors.with(settings))?;
-                found(Self::parse_chosen(text, &file, settings, methods)?)
-            }
-            Err(error) => Err(SpecErrors::not_utf8(&bytes, error.valid_up_to(), &file)),
-        }
+        Ok(spec)
     }
 
     /// The spec with other names of the files of measured surfaces; files that are not in `names` keep their
@@ -390,5 +376,57 @@ impl Spec {
     #[must_use]
     pub fn to_toml(&self) -> String {
         write::toml(self)
+    }
+}
+
+/// Results of the scans of a spec, as far as they are read.
+#[derive(Default)]
+struct Known {
+    /// Choices of `method = "auto"`.
+    methods: Vec<Method>,
+    /// Sides of the squares \[m\].
+    sides_m: Vec<f64>,
+}
+
+/// Readers of the scans of a spec.
+pub struct ScanReader<'a> {
+    /// Chooses the method.
+    pub method: Chooser<'a>,
+    /// Reads the side of the square.
+    pub side_m: SideReader<'a>,
+}
+
+/// Reads no scan.
+const UNREAD: ScanReader<'static> = ScanReader {
+    method: &|_| Err(("it is not read here".to_owned(), "write the method".to_owned())),
+    side_m: &|_| {
+        Err(("it is not read here".to_owned(), "give surface.size_m and surface.size_y_m".to_owned()))
+    },
+};
+
+/// The text of a spec.
+fn text_of(path: &Path) -> Result<String, SpecErrors> {
+    let file = path.display().to_string();
+    // Windows answers "access denied" for a folder; the question is cheap and the answer is the same
+    // everywhere.
+    if path.is_dir() {
+        return Err(SpecErrors::unreadable(&file, "it is a directory, not a TOML file"));
+    }
+    let mut bytes = Vec::new();
+    // One byte above the maximum shows that a file is too long, also where a pipe has no length.
+    let read =
+        std::fs::File::open(path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut bytes));
+    match read {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            Err(SpecErrors::unreadable(&file, "no such file"))
+        }
+        Err(error) => Err(SpecErrors::unreadable(&file, &error.to_string())),
+        Ok(length) if length as u64 > MAX_BYTES => {
+            Err(SpecErrors::unreadable(&file, &format!("it is longer than {} MiB", MAX_BYTES >> 20)))
+        }
+        Ok(_) => String::from_utf8(bytes).map_err(|error| {
+            let valid = error.utf8_error().valid_up_to();
+            SpecErrors::not_utf8(error.as_bytes(), valid, &file)
+        }),
     }
 }

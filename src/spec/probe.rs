@@ -6,9 +6,7 @@ use super::keys::{Limits, find};
 use super::number::short;
 use super::values::Values;
 use super::walk::{Origin, written};
-use crate::model::{
-    CaseParams, Coalescence, Control, FarField, Material, Method, Probe, SPHERE_SHARE, SurfaceSource,
-};
+use crate::model::{CaseParams, Coalescence, Control, FarField, Material, Method, Probe, SPHERE_SHARE};
 use crate::physics::jkr::Asperity;
 
 /// Contact radius of a smooth probe by JKR at a load \[N\]; nothing at a tension above the pull-off force.
@@ -41,10 +39,15 @@ pub fn probe_refusal(
 
 /// Checks the values of `[probe]`, `[machine]` and `[substrate]`, and loads in other units.
 pub(super) fn check_contact(case: &CaseParams, values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
-    check_loads(case, values, origins, faults);
+    check_units(origins, faults);
+    // Without the side of a scan, loads in newtons have no value yet.
+    let has_loads = !values.needs_side() || values.side_m.is_some();
+    if has_loads {
+        check_loads(case, origins, faults);
+    }
     check_machine(case, origins, faults);
     check_substrate(case, values, origins, faults);
-    if let Some(probe) = &case.probe {
+    if let Some(probe) = case.probe.as_ref().filter(|_| has_loads) {
         check_probe(probe, case, values, origins, faults);
     }
 }
@@ -63,30 +66,22 @@ fn exclude(keys: [&str; 2], help: &str, origins: &[Origin], faults: &mut Faults<
     }
 }
 
-fn check_loads(case: &CaseParams, values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
-    let keys = ["cycle.max_load", "cycle.max_force_n", "cycle.max_pressure_pa"];
-    let help = "give the loads in one unit";
-    for pair in [[keys[0], keys[1]], [keys[0], keys[2]], [keys[1], keys[2]]] {
-        exclude(pair, help, origins, faults);
+/// Keys of the loads.
+const LOADS: [&str; 3] = ["cycle.max_load", "cycle.max_force_n", "cycle.max_pressure_pa"];
+
+fn check_units(origins: &[Origin], faults: &mut Faults<'_>) {
+    let [load, force, pressure] = LOADS;
+    for pair in [[load, force], [load, pressure], [force, pressure]] {
+        exclude(pair, "give the loads in one unit", origins, faults);
     }
-    let is_measured = matches!(case.surface, SurfaceSource::Measured(_));
-    let has_sides = values.measured.size_m > 0.0 && values.measured.size_y_m > 0.0;
-    if !values.max_force_n.is_empty()
-        && is_measured
-        && !has_sides
-        && let Some(span) = latest(&[keys[1]], origins)
-    {
-        let message = "`cycle.max_force_n` needs both sides of the scan in the spec";
-        let help = "give surface.size_m and surface.size_y_m, along x and y: `hysteron import FILE -n` \
-                    prints numbers and spacings of the points; or the load as cycle.max_pressure_pa = F/A0";
-        faults.add(&span, message.to_owned(), help.to_owned());
-        return;
-    }
+}
+
+fn check_loads(case: &CaseParams, origins: &[Origin], faults: &mut Faults<'_>) {
     let Some(key) = find("cycle", "max_load").map(|place| &super::keys::KEYS[place]) else { return };
     let super::keys::Kind::Numbers(Limits { high, .. }, _) = &key.kind else { return };
     let largest = case.cycle.largest_load();
     if largest > *high
-        && let Some(span) = latest(&[keys[1], keys[2]], origins)
+        && let Some(span) = latest(&LOADS[1..], origins)
     {
         let message = format!(
             "the load is F/(E* A0) = {}, above {}: contact is full far below",

@@ -56,6 +56,12 @@ const FILES: &str = "
 The program writes this line to `campaign.toml` of a run in which `method = \"auto\"` chose different
 methods: one for each case, in the order of the sweeps. Leave it out of your own specs.
 
+## `scan_sides_m`
+
+The program writes this line to `campaign.toml` of a run with `max_force_n` on a measured surface:
+the side of the square \\[m\\], read from the scan. It has one number, or one for each case in the
+order of the sweeps. Leave it out of your own specs.
+
 ## `[files]`
 
 The program writes this section to `campaign.toml` of a run: the BLAKE3 checksum of each measured

@@ -6,24 +6,26 @@ use toml::de::DeTable;
 
 use super::SpecErrors;
 use super::entries::entries;
-use super::fault::{Faults, NOWHERE};
+use super::fault::{Faults, OPTION, in_setting};
 use super::keys::{TABLES, find};
 use super::sweep::SweepDraft;
 use super::walk::{Draft, Origin, enter};
 use crate::text::quoted;
 
-/// The option, as errors name it.
-const OPTION: &str = "--set";
-
-/// Puts the settings into a draft, in their order.
-pub(super) fn apply(settings: &[String], draft: &mut Draft) -> Result<(), SpecErrors> {
-    for setting in settings {
+/// Puts the settings into a draft, in their order, and gives them as TOML.
+pub(super) fn apply(settings: &[String], draft: &mut Draft) -> Result<Vec<String>, SpecErrors> {
+    for (number, setting) in settings.iter().enumerate() {
         let text = document(setting)?;
         let mut faults = Faults::new(&text, OPTION);
-        set(&text, draft, &mut faults);
+        set(number, &text, draft, &mut faults);
         faults.finish(Some(()))?;
     }
-    Ok(())
+    Ok(documents(settings))
+}
+
+/// Settings as TOML.
+pub(super) fn documents(settings: &[String]) -> Vec<String> {
+    settings.iter().map(|setting| document(setting).unwrap_or_else(|_| setting.clone())).collect()
 }
 
 /// A setting as TOML. A value that is not TOML is a text without its quotes.
@@ -55,8 +57,8 @@ fn document(setting: &str) -> Result<String, SpecErrors> {
     Ok(if is_toml { plain } else { format!("{key} = {}", quoted(value)) })
 }
 
-/// Puts one setting into a draft.
-fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
+/// Puts one setting into a draft, by its number.
+fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     let (root, broken) = DeTable::parse_recoverable(text);
     if let Some(error) = broken.first() {
         faults.add(
@@ -69,7 +71,9 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     let path = text.split(" = ").next().unwrap_or_default();
     let place = path.split_once('.').and_then(|(table, name)| find(table, name));
     for (key, span, written) in entries(root.get_ref()) {
-        if matches!(key, "sweep" | "files" | "auto_methods") || TABLES.contains(&key) && !path.contains('.') {
+        if matches!(key, "sweep" | "files" | "auto_methods" | "scan_sides_m")
+            || TABLES.contains(&key) && !path.contains('.')
+        {
             let help =
                 "it takes name, seed, realizations, and keys of tables such as surface.hurst".to_owned();
             faults.add(&span, format!("{OPTION} cannot set `{key}`"), help);
@@ -86,14 +90,17 @@ fn set(text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
         enter((key, span, written), draft, faults);
     }
     if path == "realizations" {
-        draft.realizations_at = Some(NOWHERE);
+        draft.realizations_at = draft.realizations_at.take().map(|at| in_setting(number, &at));
     }
     let Some(place) = place else { return };
-    if matches!(draft.origins[place], Origin::Written(_)) {
-        draft.origins[place] = Origin::Written(NOWHERE);
+    if let Origin::Written(at) = &mut draft.origins[place] {
+        *at = in_setting(number, at);
     }
     // Other values may lead to another choice.
     draft.auto_methods.clear();
+    if path.starts_with("surface.") || path.starts_with("cycle.") {
+        draft.scan_sides_m.clear();
+    }
     // The hashes are of the files that the spec names.
     if ["surface.file", "surface.files"].contains(&path) {
         draft.files.clear();

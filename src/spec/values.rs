@@ -51,6 +51,8 @@ pub struct Values {
     pub max_force_n: Vec<f64>,
     /// `cycle.max_pressure_pa`.
     pub max_pressure_pa: Vec<f64>,
+    /// Side of the square of a scan \[m\], where its file has been read for loads in newtons.
+    pub side_m: Option<f64>,
 }
 
 impl Default for Values {
@@ -75,6 +77,7 @@ impl Default for Values {
             stiffness_n_m: None,
             max_force_n: Vec::new(),
             max_pressure_pa: Vec::new(),
+            side_m: None,
         }
     }
 }
@@ -136,14 +139,21 @@ impl Values {
         }
     }
 
-    /// Side of the nominal square \[m\]; of a measured surface nothing unless the spec states it.
+    /// Side of the nominal square \[m\]; of a measured surface nothing unless the spec states it or the file
+    /// has been read.
     pub(super) fn length_m(&self) -> Option<f64> {
         if !self.measured.is_named() {
             return Some(self.generated.length_m);
         }
         let MeasuredSurface { size_m, size_y_m, .. } = self.measured;
-        let side = if size_y_m > 0.0 { size_m.min(size_y_m) } else { size_m };
-        Some(side).filter(|side| *side > 0.0)
+        let stated = if size_y_m > 0.0 { size_m.min(size_y_m) } else { size_m };
+        self.side_m.or(Some(stated).filter(|side| *side > 0.0))
+    }
+
+    /// True if loads in newtons need the size of a scan that the spec does not state.
+    pub(super) fn needs_side(&self) -> bool {
+        let has_sizes = self.measured.size_m > 0.0 && self.measured.size_y_m > 0.0;
+        self.measured.is_named() && !self.max_force_n.is_empty() && !has_sizes
     }
 
     fn attraction(&self) -> Attraction {

@@ -15,7 +15,7 @@ use super::keys::{KEYS, TABLES};
 use super::realizations::{DEFAULT, Realizations, realizations};
 use super::sweep::{SweepDraft, sweeps};
 use super::values::Values;
-use super::{auto, top, value};
+use super::{auto, sides, top, value};
 use crate::model::{Experiment, Method};
 
 /// A spec whose values are read and not yet combined.
@@ -37,6 +37,11 @@ pub(super) struct Draft {
     /// Listed choices of `method = "auto"`, and where they are written.
     pub(super) auto_methods: Vec<Method>,
     pub(super) auto_at: Option<Range<usize>>,
+    /// Listed sides of scans, and where they are written.
+    pub(super) scan_sides_m: Vec<f64>,
+    pub(super) sides_at: Option<Range<usize>>,
+    /// True if the sides are those of the scans, read for this spec.
+    pub(super) are_sides_read: bool,
 }
 
 /// Origin of a value of the base.
@@ -59,7 +64,7 @@ pub(super) fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<us
 }
 
 /// Keys at the top of a spec.
-const TOP: [&str; 16] = [
+const TOP: [&str; 17] = [
     "name",
     "seed",
     "realizations",
@@ -75,6 +80,7 @@ const TOP: [&str; 16] = [
     "sweep",
     "files",
     "auto_methods",
+    "scan_sides_m",
     "experiment",
 ];
 
@@ -106,6 +112,9 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         files: BTreeMap::new(),
         auto_methods: Vec::new(),
         auto_at: None,
+        scan_sides_m: Vec::new(),
+        sides_at: None,
+        are_sides_read: false,
     };
     let entries = entries(root.get_ref());
     if !entries.iter().any(|(key, ..)| *key == "name") {
@@ -136,6 +145,10 @@ pub(super) fn enter((key, span, written): Entry<'_, '_>, draft: &mut Draft, faul
         "auto_methods" => {
             draft.auto_at = Some(written.span());
             draft.auto_methods = auto::methods(written, faults);
+        }
+        sides::KEY => {
+            draft.sides_at = Some(written.span());
+            draft.scan_sides_m = sides::sides(written, faults);
         }
         "files" => draft.files = files(written, &span, faults),
         "sweep" => sweeps(written, &span, &mut draft.sweeps, faults),

@@ -28,6 +28,10 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
         let methods = spec.auto_methods.iter().map(|method| format!("\"{}\"", method.word()));
         writeln!(text, "auto_methods = [{}]", list(methods))?;
     }
+    if !spec.scan_sides_m.is_empty() {
+        let sides = spec.scan_sides_m.iter().map(|side| format!("{side:?}"));
+        writeln!(text, "{} = [{}]", super::sides::KEY, list(sides))?;
+    }
     for table in TABLES {
         let is_written = |key: &&Key| key.table == table && is_read(key, &spec.base) && !follows(key, spec);
         let mut keys = KEYS.iter().filter(is_written).peekable();

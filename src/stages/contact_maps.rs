@@ -5,7 +5,7 @@ use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::figures::{Both, Drawing, both};
 use crate::model::Boundary;
 use crate::schema;
-use crate::stats::significant;
+use crate::stats::load_in_words;
 use crate::store::hdf5::read_surface;
 use crate::store::parquet::read_table;
 use crate::store::{Frame, read_loop_maps};
@@ -53,11 +53,12 @@ pub(super) fn contact_maps(
         return Ok(None);
     };
     let params = &campaign.cases[asperities.case].case.params;
+    let (unit, modulus_pa) = (campaign.spec.load_unit(), params.material.contact_modulus_pa);
     let caption = format!(
-        "Contact of surface {} at F_max/(E*A₀) = {}. Left: contact spots of the asperity model. Right: grid \
+        "Contact of surface {} at {}. Left: contact spots of the asperity model. Right: grid \
          points of boundary elements. Table realizations: area_at_max_load; maps.h5: pressure_pa.",
         surfaces[row],
-        significant(loads[row], 4)
+        load_in_words(loads[row], unit, modulus_pa, Some(header.length_m))
     );
     let content = Both {
         heights_m: heights.view(),

@@ -1,7 +1,7 @@
 //! Measured loops of a spec for the report, with a simulated loop.
 
 use super::StageError;
-use super::single_cycle::{Chosen, choose, parameters};
+use super::single_cycle::{Chosen, choose};
 use crate::campaign::{Campaign, Standing};
 use crate::figures::{Simulated, measured_loops};
 use crate::model::Method;
@@ -27,12 +27,9 @@ pub(super) fn beside(
         Some(found) => Some(found),
         None => chosen(Method::Asperities)?,
     };
-    let Some(Chosen { unit, max_load, .. }) = of else {
+    let Some(Chosen { unit, max_load, parameters, .. }) = of else {
         return Ok(Some(MeasuredLoops { panel: measured_loops(&points, None)?, loops }));
     };
-    let case = &campaign.cases[unit.case].case.params;
-    let parameters =
-        parameters(case, campaign.label_of(&campaign.surfaces[unit.surface].params).as_deref(), max_load);
     let steps = read_table(&campaign.cycle_dir(unit).join("steps.parquet"), &schema::STEPS)?;
     let simulated = Simulated { max_load, parameters: &parameters, steps: &steps };
     Ok(Some(MeasuredLoops { panel: measured_loops(&points, Some(&simulated))?, loops }))

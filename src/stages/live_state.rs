@@ -5,6 +5,7 @@ use super::single_cycle::parameters;
 use crate::campaign::{Campaign, CaseUnit, Stage};
 use crate::physics::LoopPosition;
 use crate::report::{LiveLoop, LiveRun, LiveStage};
+use crate::stats::load_in_words;
 use crate::store::heartbeat::{Heartbeat, RunningTask};
 use crate::text::shell_path;
 use std::collections::HashMap;
@@ -40,7 +41,14 @@ impl Cycles {
         let of_case = |unit: &CaseUnit| {
             let params = &unit.case.params;
             let max_load = params.cycle.largest_load();
-            (max_load, parameters(params, campaign.label_of(&params.surface).as_deref(), max_load))
+            let of_generated = params.surface.generated().map(|surface| surface.length_m);
+            let of_scan = match campaign.spec.scan_sides_m.as_slice() {
+                [side_m] => Some(*side_m),
+                _ => None,
+            };
+            let (modulus_pa, side_m) = (params.material.contact_modulus_pa, of_generated.or(of_scan));
+            let load = load_in_words(max_load, campaign.spec.load_unit(), modulus_pa, side_m);
+            (max_load, parameters(params, campaign.label_of(&params.surface).as_deref(), &load))
         };
         Self {
             of_cases: campaign.cases.iter().map(of_case).collect(),

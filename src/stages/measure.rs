@@ -9,7 +9,7 @@ use crate::model::MeasuredSurface;
 use crate::model::{Detrend, Filter};
 use crate::physics::surface::common_spectrum::ScanSpectrum;
 use crate::physics::surface::edges::Edges;
-use crate::physics::surface::measured::{Prepared, Treatment};
+use crate::physics::surface::measured::{Prepared, Treatment, square_side};
 use crate::physics::surface::periodogram::{Estimate, periodogram, windowed_periodogram};
 use crate::physics::surface::self_affine::{SelfAffine, fit_self_affine};
 use crate::physics::surface::texture::Texture;
@@ -68,15 +68,8 @@ pub fn measure(params: &MeasuredSurface, digest: &str, key: &str) -> Result<Impo
     complete(params, &scan)?;
     let unit = unit(params, &scan)?;
     let height_factor_m = Some(unit * scan.factor);
-    let spacing = spacing(params, &scan)?;
+    let spacing = plausible(params, spacing(params, &scan)?)?;
     let notes = notes(params, &scan);
-    if let Some(apart) = spacing.iter().find(|apart| !PIXEL_SIZES.contains(apart)) {
-        let why = format!(
-            "its points are {apart:e} m apart\nhelp: check the unit and the pixel size; a scan has points \
-             1e-12 m to 0.1 m apart"
-        );
-        return Err(refused(Path::new(&params.file), &why));
-    }
     agree(path, scan.periodic, params.periodic)?;
     let treatment = Treatment {
         missing: params.missing,
@@ -108,6 +101,42 @@ pub fn measure(params: &MeasuredSurface, digest: &str, key: &str) -> Result<Impo
     };
     let header = header(&prepared, params.periodic, key, measured);
     Ok(Imported { prepared, header, height_factor_m, notes })
+}
+
+/// Side of the square of a measured surface \[m\], from its file.
+///
+/// # Errors
+/// The problem and the help if the file cannot be read or lacks required data.
+pub fn scan_side_m(params: &MeasuredSurface) -> Result<f64, (String, String)> {
+    let read = || {
+        let scan = match source(Path::new(&params.file), params)? {
+            Source::Own(header, heights) => {
+                same_size(params, header.length_m, heights.nrows())?;
+                return Ok(header.length_m);
+            }
+            Source::Scan(scan) => scan,
+        };
+        complete(params, &scan)?;
+        let (rows, columns) = scan.heights.dim();
+        Ok(square_side([rows, columns], plausible(params, spacing(params, &scan)?)?))
+    };
+    read().map_err(|error: StageError| {
+        let why = error.to_string();
+        let (problem, help) = why.split_once("\nhelp: ").unwrap_or((&why, "check the file"));
+        (problem.to_owned(), help.to_owned())
+    })
+}
+
+/// Spacings of the points \[m\], unless they are those of no scan.
+fn plausible(params: &MeasuredSurface, spacing_m: [f64; 2]) -> Result<[f64; 2], StageError> {
+    let Some(apart) = spacing_m.iter().find(|apart| !PIXEL_SIZES.contains(apart)) else {
+        return Ok(spacing_m);
+    };
+    let why = format!(
+        "its points are {apart:e} m apart\nhelp: check the unit and the pixel size; a scan has points 1e-12 \
+         m to 0.1 m apart"
+    );
+    Err(refused(Path::new(&params.file), &why))
 }
 
 /// Header of a measured surface in a run.

@@ -12,7 +12,7 @@ use crate::physics::theory::curvature_density;
 use crate::report::SingleCycle;
 use crate::schema;
 use crate::spec::CaseParams;
-use crate::stats::{labels_with_unit, significant};
+use crate::stats::{labels_with_unit, load_in_words, significant};
 use crate::store::hdf5::{SurfaceHeader, read_surface};
 use crate::store::parquet::read_table;
 use crate::store::{Frame, read_loop_maps};
@@ -29,6 +29,8 @@ const POINTS: usize = 120;
 pub(super) struct Chosen<'a> {
     pub(super) unit: &'a CycleUnit,
     pub(super) max_load: f64,
+    /// Parameters of its case as text, with the load reversal in the unit of the spec.
+    pub(super) parameters: String,
     /// True if a case with a larger mean Θ has no such cycle.
     has_larger: bool,
 }
@@ -61,7 +63,15 @@ pub(super) fn choose<'a>(
     let first = |row: usize| done().find(|unit| campaign.cases[unit.case].id == ids[row] && fits(unit));
     let found =
         rows.iter().enumerate().find_map(|(place, (row, _))| first(*row).map(|unit| (place, *row, unit)));
-    Ok(found.map(|(place, row, unit)| Chosen { unit, max_load: loads[row], has_larger: place > 0 }))
+    let sides = cases.f64_or_null("length_m")?;
+    Ok(found.map(|(place, row, unit)| {
+        let file = campaign.label_of(&campaign.surfaces[unit.surface].params);
+        let (case, unit_of_loads) = (&campaign.cases[unit.case].case.params, campaign.spec.load_unit());
+        let modulus_pa = case.material.contact_modulus_pa;
+        let load = load_in_words(loads[row], unit_of_loads, modulus_pa, sides[row]);
+        let parameters = parameters(case, file.as_deref(), &load);
+        Chosen { unit, max_load: loads[row], parameters, has_larger: place > 0 }
+    }))
 }
 
 /// The cycles of the report: by boundary elements, then by the asperity model.
@@ -81,10 +91,7 @@ fn of_elements(
     cases: &Frame,
 ) -> Result<Option<SingleCycle>, StageError> {
     let chosen = choose(campaign, standings, cases, Method::BoundaryElements, |_| true)?;
-    let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
-    let case = &campaign.cases[unit.case].case.params;
-    let parameters =
-        parameters(case, campaign.label_of(&campaign.surfaces[unit.surface].params).as_deref(), max_load);
+    let Some(Chosen { unit, max_load, parameters, has_larger }) = chosen else { return Ok(None) };
     let folder = campaign.cycle_dir(unit);
     let steps = read_table(&folder.join(format!("{}.parquet", schema::STEPS.name)), &schema::STEPS)?;
     let maps = read_loop_maps(&folder.join("maps.h5"), max_load)?;
@@ -116,12 +123,10 @@ fn of_asperities(
     let grid = |surface: &GeneratedSurface| surface.grid() <= MAX_POINTS;
     let fits = |unit: &CycleUnit| campaign.surfaces[unit.surface].params.generated().is_none_or(grid);
     let chosen = choose(campaign, standings, cases, Method::Asperities, fits)?;
-    let Some(Chosen { unit, max_load, has_larger }) = chosen else { return Ok(None) };
+    let Some(Chosen { unit, max_load, parameters, has_larger }) = chosen else { return Ok(None) };
     let has_elements = cases.text("method")?.iter().any(|method| *method != Method::Asperities.word());
     let choice = choice(has_elements.then_some(Method::Asperities), has_larger);
     let case = &campaign.cases[unit.case].case.params;
-    let parameters =
-        parameters(case, campaign.label_of(&campaign.surfaces[unit.surface].params).as_deref(), max_load);
     let surface = &campaign.surfaces[unit.surface];
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let asperities = read_table(&campaign.asperities_path(surface), &schema::ASPERITIES)?;
@@ -180,8 +185,8 @@ fn choice(method: Option<Method>, has_larger: bool) -> String {
     format!("The case{method} with the largest mean Θ/(E*A_{{0}}h_{{rms}}){size}")
 }
 
-/// The parameters of a case as text: `ζ = 64, H = 0.8, …`.
-pub(super) fn parameters(case: &CaseParams, file: Option<&str>, max_load: f64) -> String {
+/// The parameters of a case with a load reversal as text: `ζ = 64, H = 0.8, …`.
+pub(super) fn parameters(case: &CaseParams, file: Option<&str>, load: &str) -> String {
     let material = &case.material;
     let with_unit = |symbol: &str, column: &str, value: f64| {
         labels_with_unit(column, &[value])
@@ -217,7 +222,7 @@ pub(super) fn parameters(case: &CaseParams, file: Option<&str>, max_load: f64) -
         method => vec![("method", method.kind().word())],
     };
     parts.extend(choices.iter().map(|(key, word)| format!("{key} = \"{word}\"")));
-    parts.push(format!("F_max/(E*A₀) = {}", significant(max_load, 4)));
+    parts.push(load.to_owned());
     parts.join(", ")
 }
 

@@ -57,15 +57,17 @@ enum Statistic {
     High,
     Least,
     Greatest,
+    Count,
 }
 
-const STATISTICS: [(&str, Statistic); 6] = [
+const STATISTICS: [(&str, Statistic); 7] = [
     ("_mean", Statistic::Mean),
     ("_sd", Statistic::Sd),
     ("_ci95_low", Statistic::Low),
     ("_ci95_high", Statistic::High),
     ("_min", Statistic::Least),
     ("_max", Statistic::Greatest),
+    ("_count", Statistic::Count),
 ];
 
 impl Statistic {
@@ -89,8 +91,23 @@ impl Statistic {
             Self::High => end(1.0),
             Self::Least => values.iter().copied().min_by(f64::total_cmp),
             Self::Greatest => values.iter().copied().max_by(f64::total_cmp),
+            Self::Count => Some(values.len() as f64).filter(|count| *count > 0.0),
         }
     }
+}
+
+/// Number of surfaces in the mean of a result, and of all finished ones, where the first is smaller.
+///
+/// # Errors
+/// If the table `cases` lacks the number of finished surfaces.
+pub fn fewer_surfaces(cases: &Frame, column: &str, row: usize) -> Result<Option<[i64; 2]>, StatsError> {
+    let name = format!("{column}_count");
+    if cases.table().column(&name).is_none() {
+        return Ok(None);
+    }
+    let count = cases.i64_or_null(&name)?.get(row).copied().flatten();
+    let done = cases.i64("done_count")?.get(row).copied().unwrap_or_default();
+    Ok(count.filter(|count| *count < done).map(|count| [count, done]))
 }
 
 /// The columns of the table `realizations` that the table `cases` says something of.
@@ -157,7 +174,9 @@ fn averages(group: &Group, case: &CaseInput, max_load: f64, finished: usize) -> 
             None if of_surfaces.is_empty() => what.take(group.values(base)),
             None => what.take(&of_surfaces),
         };
-        row.push((column.name.to_owned(), Value::from(value)));
+        let is_count = what == Statistic::Count;
+        let value = if is_count { value.map(|count| count as i64).into() } else { Value::from(value) };
+        row.push((column.name.to_owned(), value));
     }
     let done = group.unconverged.len();
     row.push(("planned_count".to_owned(), case.planned_count.into()));

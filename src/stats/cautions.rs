@@ -93,7 +93,8 @@ pub const CAUTIONS: [Caution; 28] = [
     warning(
         "coarse",
         "coarse grid",
-        "boundary elements have {} grid points per shortest wavelength",
+        "boundary elements have {} grid points per shortest wavelength (12 per JKR radius of a probe count \
+         as 16)",
         "Dissipated energy and pull-off force depend on the grid.",
         "Increase `boundary_elements.points`.",
     ),

@@ -55,6 +55,19 @@ pub fn loads(cases: &Frame) -> Result<Loads, StatsError> {
     Ok(Loads { values: cases.f64("max_load")?, symbol: OVER_MODULUS, column: "max_load" })
 }
 
+/// A load reversal `F/(E* A0)` in the unit of a spec: `F_max = 2 µN`. Newtons need the side of the square
+/// \[m\].
+#[must_use]
+pub fn load_in_words(max_load: f64, unit: &str, modulus_pa: f64, side_m: Option<f64>) -> String {
+    let pressure_pa = modulus_pa * max_load;
+    let (symbol, column, value) = match (unit, side_m) {
+        ("N", Some(side_m)) => ("F_max", "max_load_n", pressure_pa * side_m * side_m),
+        ("Pa", _) => ("F_max/A₀", "max_load_pa", pressure_pa),
+        _ => ("F_max/(E*A₀)", "max_load", max_load),
+    };
+    format!("{symbol} = {}", labels_with_unit(column, &[rounded(value)]).concat())
+}
+
 fn rounded(value: f64) -> f64 {
     format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }

@@ -33,14 +33,14 @@ mod warnings;
 use std::path::PathBuf;
 
 pub use avalanches::avalanches;
-pub use cases::cases;
+pub use cases::{cases, fewer_surfaces};
 pub use cautions::{CAUTIONS, Caution, LIMITS, LONGEST_STEP, Limit, MANY_STEPS, MOST_LEFT_OUT, condition};
 pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, matched, singles, together};
 pub use curves::curves;
 pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};
 pub use findings::{FINDINGS, Judged, Reading, Verdict, findings};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
-pub use loads::loads;
+pub use loads::{load_in_words, loads};
 pub use methods::{MethodPair, method_pairs, methods, methods_summary, names_of_pairs};
 pub use planned::{Planned, planned};
 pub use realizations::{realizations, results};

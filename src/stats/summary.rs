@@ -1,6 +1,7 @@
 //! The table of results at the end of a run.
 
 use super::StatsError;
+use super::cases::fewer_surfaces;
 use super::digits::{column_exponent, decimals, power_of_ten, significant};
 use super::listed::{Listed, listing, listing_of, sweeps};
 use super::loads::{FORCE, OVER_MODULUS, loads};
@@ -63,6 +64,10 @@ const OF_PROBE: Results = [
 const OF_PROBE_HEADER: &str = "\
 Probe: F_po [N], Θ [J]; w_approach and w_retract [mJ/m²], apparent works of
 adhesion of JKR fits of the contact radius against load.";
+
+/// Label of the line of numbers of surfaces, and its meaning.
+const SURFACES: &str = "  surfaces";
+const SURFACES_NOTE: &str = "surfaces: those in the mean, of the finished ones; the others have no fit.";
 
 const PER_AREA_HEADER: &str = "\
 Per nominal area: F_po [kPa]; Θ, w_closing and w_opening [mJ/m²], the works of
@@ -185,7 +190,9 @@ fn in_si(cases: &Frame) -> Result<Vec<String>, StatsError> {
         if !tables.is_empty() {
             lines.push(String::new());
             lines.extend(header.lines().map(str::to_owned));
+            let has_fewer = tables.iter().any(|line| line.starts_with(SURFACES));
             lines.extend(tables);
+            lines.extend(has_fewer.then(|| SURFACES_NOTE.to_owned()));
             lines.extend(persson_tosatti(cases, |row| radii[row].is_some() == is_probe)?);
         }
     }
@@ -279,6 +286,14 @@ fn case_lines(
     }
     let label = listed.label.replace(" = ", "=") + if listed.is_reference { "*" } else { "" };
     let mut lines = labelled(&label, [load, format!("{done}/{planned}")], four(results));
+    let mut surfaces = Vec::new();
+    for (_, name, _) in of {
+        let fewer = fewer_surfaces(cases, name, listed.row)?;
+        surfaces.push(fewer.map_or_else(String::new, |[count, done]| format!("{count}/{done}")));
+    }
+    if surfaces.iter().any(|fewer| !fewer.is_empty()) {
+        lines.extend(labelled(SURFACES, [String::new(), String::new()], four(surfaces)));
+    }
     if changes.iter().any(Option::is_some) {
         let cells = changes.into_iter().map(|change| change.unwrap_or_else(|| "-".to_owned())).collect();
         lines.extend(labelled("  change [%]", [String::new(), String::new()], four(cells)));

@@ -68,7 +68,7 @@ impl Container {
     /// # Errors
     /// If the file cannot be read, or the archive or its metadata are damaged.
     pub fn open(path: &Path) -> Result<Option<Self>, StoreError> {
-        fenced(|| Self::read(path)).map_err(|cause| StoreError::new("read the container", path, cause))
+        fenced(|| Self::read(path)).map_err(|cause| refused(path, cause))
     }
 
     fn read(path: &Path) -> Result<Option<Self>, Cause> {
@@ -131,8 +131,19 @@ impl Container {
             file.flush()?;
             Ok(path)
         };
-        fenced(write).map_err(|cause| StoreError::new("read the container", &self.path, cause))
+        fenced(write).map_err(|cause| refused(&self.path, cause))
     }
+}
+
+/// The error of a container, with help.
+fn refused(path: &Path, cause: Cause) -> StoreError {
+    let why = cause.to_string();
+    let help = match cause.downcast_ref::<std::io::Error>().map(std::io::Error::kind) {
+        Some(std::io::ErrorKind::NotFound) => "check the path",
+        _ => "download or export the container again, or unpack it and import its files",
+    };
+    let cause = if why.contains("\nhelp: ") { cause } else { format!("{why}\nhelp: {help}").into() };
+    StoreError::new("read the container", path, cause)
 }
 
 /// True if the first part of an archive is one of a container: its name begins at byte 30.
@@ -217,7 +228,8 @@ fn member(of: &Value, names: &[String]) -> Result<Member, String> {
     let name = word(&of["name"]);
     let Some(part) = part else {
         let name = name.unwrap_or_else(|| "a measurement".to_owned());
-        return Err(format!("{name:?} has no data file in the archive"));
+        let help = "export the container again with its data files";
+        return Err(format!("{name:?} has no data file in the archive\nhelp: {help}"));
     };
     let is_processed = files[0].as_ref() == Some(&part);
     let sizes = of["size"].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();

@@ -4,7 +4,7 @@ use crate::support::square;
 use hysteron::model::{Amplitudes, Detrend, Filter, Missing, Normalization};
 use hysteron::physics::PhysicsError;
 use hysteron::physics::surface::edges::Edges;
-use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare};
+use hysteron::physics::surface::measured::{Prepared, Treatment, find_measured, prepare, square_side};
 use hysteron::physics::surface::periodogram::{Estimate, periodogram, windowed_periodogram};
 use hysteron::physics::surface::self_affine::fit_self_affine;
 use hysteron::physics::surface::shape::Shape;
@@ -199,6 +199,23 @@ fn val_points_that_lie_farther_apart_one_way_are_interpolated() {
     let part = unit(&square.slice(s![..159, ..159]).to_owned(), &Treatment { points_per_shortest_wavelength: 16.0, ..PLAIN });
     assert_eq!(prepared.heights_m.dim(), (159, 159));
     assert!(most(&(&prepared.heights_m - &part.heights_m)) < 1e-3, "{}", most(&(&prepared.heights_m - &part.heights_m)));
+}
+
+/// The side known from counts and spacings is that of the prepared square, to the last bit.
+#[test]
+fn law_the_side_of_the_square_is_known_before() {
+    let height = |i: usize, j: usize| (0.11 * i as f64).sin() + (0.09 * j as f64).cos();
+    for (counts, spacing) in [
+        ([40, 60], [0.1, 0.1]),
+        ([61, 40], [0.1, 0.10009]),
+        ([60, 40], [0.1, 0.1002]),
+        ([50, 64], [0.3, 0.1]),
+        ([64, 33], [1.7e-8, 5.1e-8]),
+        ([33, 90], [2.5e-7, 1e-7]),
+    ] {
+        let prepared = prepare(Array2::from_shape_fn((counts[0], counts[1]), |(i, j)| height(i, j)), spacing, &PLAIN).unwrap();
+        assert_eq!(square_side(counts, spacing), prepared.length_m, "{counts:?} {spacing:?}");
+    }
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn e2e_every_template_is_a_spec() {
     let bench = Bench::new("");
     let list = stdout(&hysteron(&bench, &["init", "--list"]));
     let names: Vec<&str> = list.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
-    assert_eq!(names, ["quickstart", "sweep", "scan", "spectrum", "probe", "full"]);
+    assert_eq!(names, ["quickstart", "sweep", "scan", "spectrum", "probe", "loop", "full"]);
     for name in names {
         let printed = hysteron(&bench, &["init", name]);
         assert_eq!(code(&printed), 0, "{}", stderr(&printed));

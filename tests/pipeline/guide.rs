@@ -169,10 +169,17 @@ fn e2e_columns_of_the_guide_exist() {
             count += 1;
             // A pattern stands for several columns, `/height_m` is a dataset, and `import --json` has keys of its own.
             let of_import = ["roll_off_m", "long_cut_m", "short_cut_m"].contains(&name.as_str());
+            // A line of the resolved spec.
+            let of_spec = name == "scan_sides_m";
             let exists = match name.split_once('*') {
                 Some((before, after)) => columns.iter().any(|column| column.starts_with(before) && column.ends_with(after)),
                 None => {
-                    columns.contains(name.as_str()) || tables.contains(name.as_str()) || is_key(name) || of_import || name == "/height_m"
+                    columns.contains(name.as_str())
+                        || tables.contains(name.as_str())
+                        || is_key(name)
+                        || of_import
+                        || of_spec
+                        || name == "/height_m"
                 }
             };
             assert!(exists, "{}: `{name}` is not a column", page.name);

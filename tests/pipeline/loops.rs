@@ -138,6 +138,55 @@ fn e2e_the_example_gives_its_parameters_back() {
     assert!(shown.lines().skip(1).all(|line| line.chars().count() <= 80), "{shown}");
 }
 
+/// Several loops in one command: a table each, in the folder of `--out`. One that fails is named, and other files are refused.
+#[test]
+fn e2e_several_loops_are_imported_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let good = text("force_nN,displacement_um", |[way, force]| format!("{force:.4},{way:.4}"));
+    fs::write(at("a.csv"), &good).unwrap();
+    fs::write(at("b.csv"), good.replace("force_nN", "force_uN")).unwrap();
+    fs::write(at("bad.csv"), good.lines().take(62).collect::<Vec<_>>().join("\n")).unwrap();
+    fs::write(at("scan.txt"), "1 2 3\n4 5 6\n").unwrap();
+    fs::create_dir(at("more")).unwrap();
+    fs::copy(at("a.csv"), at("more/a.csv")).unwrap();
+    let run = hysteron(folder.path(), &["import", "a.csv", "b.csv", "--out", "loops", "--json"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let answer: Value = serde_json::from_str(&stdout(&run)).unwrap();
+    let force = |place: usize| answer["loops"][place]["pull_off_load_n"].as_f64().unwrap();
+    // The same numbers in other units.
+    assert!((force(1) / force(0) - 1e3).abs() < 1e-6 && answer["left_out"].as_array().unwrap().is_empty(), "{answer:#}");
+    for name in ["a", "b"] {
+        assert_eq!(read_table(&at(&format!("loops/{name}_loop.parquet")), &MEASURED_STEPS).unwrap().row_count(), 121);
+    }
+    let some = hysteron(folder.path(), &["import", "a.csv", "bad.csv", "-n"]);
+    assert_eq!(code(&some), 3, "{}", stderr(&some));
+    assert!(
+        stdout(&some).contains("a.csv\n") && stdout(&some).contains("warning: left out: ") && stdout(&some).contains("no load reversal")
+    );
+    for (files, words) in [
+        (&["bad.csv", "bad.csv"][..], "two loops"),
+        (&["a.csv", "more/a.csv"], "has the name of an earlier file"),
+        (&["a.csv", "scan.txt"], "scan.txt has no force and displacement"),
+        (&["scan.txt", "bad.csv", "--loop"], "no loop of 2 files was read"),
+    ] {
+        let output = hysteron(folder.path(), &[&["import"], files].concat());
+        assert!(code(&output) == 1 && stderr(&output).contains(words) && stderr(&output).contains("\nhelp: "), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn e2e_init_loop_writes_its_example() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = hysteron(folder.path(), &["init", "loop"]);
+    assert_eq!((code(&made), stderr(&made).trim()), (0, "Written: loop.csv"));
+    fs::write(folder.path().join("mine.toml"), stdout(&made)).unwrap();
+    let run = hysteron(folder.path(), &["run", "mine.toml", "--out", "out"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let loops = read_table(&folder.path().join("out/statistics/measured_loops.parquet"), &MEASURED_LOOPS).unwrap();
+    assert_eq!(loops.row_count(), 1);
+}
+
 #[test]
 fn reg_bad_loops_are_refused_with_help() {
     let folder = tempfile::tempdir().unwrap();

@@ -31,6 +31,8 @@ mod losses;
 #[cfg(feature = "stats")]
 mod manifest;
 #[cfg(feature = "stats")]
+mod newtons;
+#[cfg(feature = "stats")]
 mod panels;
 #[cfg(feature = "stats")]
 mod probe;

@@ -278,14 +278,32 @@ fn e2e_other_and_damaged_archives() {
     let (status, text) = run("cut.zip");
     assert!(status == 3 && text.contains("2 scans imported, 2 left out"), "{text}");
     assert!(text.contains("map 2 um: cannot read") && !text.contains("/tmp/"), "{text}");
+    // A size in the metadata that differs from that of the file: the file counts, and both are named.
+    let doubled = |(name, bytes): &(String, Vec<u8>)| {
+        let mut bytes = bytes.clone();
+        if name == "index.json" {
+            let mut index: Value = serde_json::from_slice(&bytes).unwrap();
+            let size = &mut index["surfaces"][0]["topographies"][0]["size"][0];
+            *size = (2.0 * size.as_f64().unwrap()).into();
+            bytes = index.to_string().into_bytes();
+        }
+        (name.clone(), bytes)
+    };
+    assert!(!run("scans.zip").1.contains("in index.json"));
+    packed(&at("size.zip"), &parts.iter().map(doubled).collect::<Vec<_>>());
+    let (status, text) = run("size.zip");
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(status == 0 && words.contains("a size of 1.6000e-5 m x 8.0000e-6 m in index.json, of 8.0000e-6 m x"), "{text}");
     // A missing data file, an index that is no JSON, an archive without surfaces, one that was cut off.
     packed(&at("lost.zip"), &without(&["topography0.nc"]));
     assert!(run("lost.zip").1.contains("has no data file in the archive"));
     packed(&at("odd.zip"), &[vec![("index.json".to_owned(), b"{".to_vec())], without(&["index.json"])].concat());
-    assert!(run("odd.zip").1.contains("index.json is damaged"));
+    let (status, text) = run("odd.zip");
+    assert!(status == 1 && text.contains("index.json is damaged") && text.contains("\nhelp: download or export"), "{text}");
     packed(&at("empty.zip"), &without(&["topography0.nc", "topography1.nc", "topography2.nc", "topography3.nc"]));
     let (status, text) = run("empty.zip");
     assert!(status == 1 && text.contains("no scan was read"), "{text}");
+    assert!(text.contains("\nhelp: export the container again with its data files") && text.matches("help: ").count() == 1, "{text}");
     let whole = fs::read(container()).unwrap();
     fs::write(at("short.zip"), &whole[..whole.len() / 2]).unwrap();
     let (status, text) = run("short.zip");
@@ -322,7 +340,7 @@ fn reg_options_of_import_are_refused_with_help() {
 }
 
 /// Scans of different size: figures in SI units have the columns of the tables, those without a common scale are left out, and so is the table over the cut-off
-/// wavelength. A size that contradicts the file is an error, and a force needs the sizes.
+/// wavelength. A size that contradicts the file is an error, and so is one force on scans of two sizes.
 #[test]
 fn reg_scans_of_different_size_in_si_units() {
     let bench = bench();
@@ -354,5 +372,5 @@ fn reg_scans_of_different_size_in_si_units() {
     let force = spec(files).replace("[cycle]\nmax_load = [0.004]", "[cycle]\nmax_force_n = [1e-6]");
     fs::write(at("spec.toml"), force).unwrap();
     let refused = hysteron(&bench, &["plan", "spec.toml"]);
-    assert!(code(&refused) == 2 && stderr(&refused).contains("both sides of the scan"), "{}", stderr(&refused));
+    assert!(code(&refused) == 2 && stderr(&refused).contains("one force is two loads F/(E* A0)"), "{}", stderr(&refused));
 }

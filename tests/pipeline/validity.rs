@@ -1,7 +1,7 @@
 //! How far to trust a row: the numbers, their limits, and the cautions.
 
 use hysteron::schema::CASES;
-use hysteron::stats::{CAUTIONS, CaseInput, LIMITS, Shown, Value, cases, realizations, summary, warnings};
+use hysteron::stats::{CAUTIONS, CaseInput, LIMITS, Shown, Value, cases, fewer_surfaces, realizations, summary, warnings};
 use hysteron::store::{ColumnData, Frame};
 
 use crate::panels::replaced;
@@ -120,6 +120,31 @@ fn val_fractions_of_contacts_are_weighted_by_contacts() {
     let found = warnings(&counted(&[[20, 0, 10], [20, 0, 0]])).unwrap();
     assert_eq!(found[0].measured, "25\u{a0}% of contact spots overlap a neighbour (limit 10\u{a0}%)");
     assert!(found[0].kind.action.contains("smaller `max_load`") && found[0].kind.action.contains("\"merge\""));
+}
+
+/// A JKR fit of one of two surfaces: the number of surfaces is in the table, and in the summary below the mean.
+#[test]
+fn law_means_of_fewer_surfaces_say_how_many() {
+    let works = |retraction: Value| [("work_approach_j_m2", 0.02.into()), ("work_retraction_j_m2", retraction)];
+    let of_probe = |input: &mut CaseInput| {
+        input.parameters.retain(|(name, _)| name != "probe_radius_m");
+        input.parameters.push(("probe_radius_m".to_owned(), 2e-5.into()));
+    };
+    let frame = table(&[&works(0.04.into()), &works(Value::Missing)], 0.1, of_probe);
+    let count = |name: &str| frame.i64_or_null(name).unwrap()[0];
+    assert_eq!((count("work_approach_j_m2_count"), count("work_retraction_j_m2_count")), (Some(2), Some(1)));
+    assert_eq!(count("work_loss_j_m2_count"), None);
+    let [approach, retraction] = ["work_approach_j_m2", "work_retraction_j_m2"].map(|name| fewer_surfaces(&frame, name, 0).unwrap());
+    assert_eq!((approach, retraction, fewer_surfaces(&frame, "loss", 0).unwrap()), (None, Some([1, 2]), None));
+    let text = summary(&frame, None, Shown::All).unwrap();
+    let line = text.lines().find(|line| line.starts_with("  surfaces")).unwrap();
+    assert!(line.ends_with(" 1/2") && line.matches('/').count() == 1, "{text}");
+    assert!(
+        text.contains("surfaces: those in the mean, of the finished ones") && text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
+    let both = table(&[&works(0.04.into()), &works(0.05.into())], 0.1, of_probe);
+    assert!(!summary(&both, None, Shown::All).unwrap().contains("surfaces"));
 }
 
 #[test]

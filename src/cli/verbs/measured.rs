@@ -50,6 +50,9 @@ pub(in crate::cli) const LIMITS: Constants = Constants {
 };
 
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
+    if asked.files.len() > 1 && asked.files.iter().any(|file| loops::is_meant(asked, file)) {
+        return loops::import_all(asked);
+    }
     if inputs::are_several(&asked.files)? {
         return several::import(asked);
     }

@@ -3,7 +3,7 @@
 use super::{BAD_SPEC, Fault, failed};
 use crate::campaign::{Campaign, with_recorded_files};
 use crate::cli::{FolderArguments, OutputArguments};
-use crate::spec::Spec;
+use crate::spec::{ScanReader, Spec};
 use crate::stages;
 use crate::text::{shell_path, shown};
 use std::path::{Path, PathBuf};
@@ -46,7 +46,8 @@ fn read(spec: &Path, out: Option<&Path>, settings: &[String]) -> Result<Campaign
 }
 
 fn parsed(spec: &Path, settings: &[String]) -> Result<Spec, Fault> {
-    Spec::read_choosing(spec, settings, &stages::chosen_method)
+    let reader = ScanReader { method: &stages::chosen_method, side_m: &stages::scan_side_m };
+    Spec::read_choosing(spec, settings, &reader)
         .map_err(|errors| Fault { code: BAD_SPEC, text: errors.to_string() })
 }
 

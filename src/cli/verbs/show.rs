@@ -288,5 +288,8 @@ fn result(row: &Map<String, Value>, name: &str) -> Option<String> {
     }
     let mean = number(&format!("{name}_mean"))?;
     let sd = number(&format!("{name}_sd")).map(|sd| format!(" ± {sd}")).unwrap_or_default();
-    Some(format!("{name} = {mean}{sd}{unit}"))
+    let count = |name: &str| row.get(name).and_then(Value::as_i64);
+    let fewer = count(&format!("{name}_count")).zip(count("done_count")).filter(|(own, done)| own < done);
+    let fewer = fewer.map(|(own, done)| format!(" ({own} of {done} surfaces)")).unwrap_or_default();
+    Some(format!("{name} = {mean}{sd}{unit}{fewer}"))
 }

@@ -216,6 +216,20 @@ struct Square {
     coarsening: f64,
 }
 
+/// Side \[m\] of the central square that [`prepare`] makes of a scan.
+///
+/// It is the number of points along the shorter side times the smaller spacing, after interpolation along the
+/// direction of the larger spacing.
+#[must_use]
+pub fn square_side(counts: [usize; 2], spacing_m: [f64; 2]) -> f64 {
+    let fine = spacing_m[0].min(spacing_m[1]);
+    let count = |along: usize| {
+        let ratio = spacing_m[along] / fine;
+        if ratio > 1.0 + SPACING_TOLERANCE { fine_count(counts[along], ratio) } else { counts[along] }
+    };
+    count(0).min(count(1)) as f64 * fine
+}
+
 fn square(heights_m: Array2<f64>, spacing_m: [f64; 2], edges: Edges) -> Result<Square, PhysicsError> {
     if !(spacing_m.iter().all(|d| *d > 0.0 && d.is_finite())) {
         let wrong = spacing_m.into_iter().find(|d| !(*d > 0.0 && d.is_finite())).unwrap_or(f64::NAN);
@@ -288,7 +302,7 @@ fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, Ph
     if columns < TAPS {
         return zeros((rows, columns));
     }
-    let count = ((columns - 1) as f64 * ratio).floor() as usize + 1;
+    let count = fine_count(columns, ratio);
     let mut fine = zeros((rows, count))?;
     for k in 0..count {
         let place = k as f64 / ratio;
@@ -307,6 +321,11 @@ fn resampled(heights: ArrayView2<'_, f64>, ratio: f64) -> Result<Array2<f64>, Ph
         }
     }
     Ok(fine)
+}
+
+/// Number of points after interpolation to a spacing smaller by `ratio`.
+fn fine_count(count: usize, ratio: f64) -> usize {
+    (count.saturating_sub(1) as f64 * ratio).floor() as usize + 1
 }
 
 /// Number of points in the interpolation of a value.

@@ -43,8 +43,17 @@ fn val_faults_of_a_setting_name_the_option() {
     told(SMALL, "sweep=[]", &["--set cannot set `sweep`"]);
     told(SMALL, "surface={}", &["--set cannot set `surface`"]);
     told(SPEC, "surface.magnification=8", &["every sweep of the spec sets `surface.magnification`", "--set has no effect"]);
-    // What only two values show has no place in the file; the settings are named.
-    told(SMALL, "surface.rms_height_m=0.01", &["must be less than `surface.length_m`", "read with --set surface.rms_height_m=0.01"]);
+    // What only two values show has its place in the setting; the settings are named.
+    let rms = [
+        "must be less than `surface.length_m`",
+        "--> --set:1:24\n",
+        " 1 | surface.rms_height_m = 0.01\n",
+        "|                        ^^^^\n",
+    ];
+    told(SMALL, "surface.rms_height_m=0.01", &rms);
+    told(SMALL, "surface.rms_height_m=0.01", &["read with --set surface.rms_height_m=0.01"]);
+    let said = with(SMALL, &["seed=3", "surface.length_m=1e-7", "name=\"other\""]).unwrap_err();
+    assert!(said.contains("--> --set:1:20") && said.contains("surface.length_m = 1e-7"), "{said}");
 }
 
 #[test]

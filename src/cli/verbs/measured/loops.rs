@@ -1,7 +1,7 @@
 //! `import` of a measured loop: its results as text and as JSON, and its points as a table.
 
 use super::super::outputs::may_be_written;
-use super::super::{Fault, failed, say};
+use super::super::{FAILED_CASES, Fault, failed, make_folder, say};
 use crate::cli::ImportArguments;
 use crate::lengths::sizes;
 use crate::model::{Baseline, Choice as _, Compression, LoopOptions};
@@ -10,7 +10,7 @@ use crate::stages::{Estimate, MeasuredLoop, half_width, measure_loop};
 use crate::stats::significant;
 use crate::store::force_curve::is_force_curve;
 use crate::store::parquet::write_table;
-use crate::text::wrapped;
+use crate::text::{shown, wrapped};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -22,21 +22,8 @@ pub(super) fn is_meant(asked: &ImportArguments, file: &Path) -> bool {
 
 /// Evaluates a loop.
 pub(super) fn import(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> {
-    let options = options(asked, file)?;
-    let source = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let found = measure_loop(file, &source, &options).map_err(failed)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(file));
-    if !asked.dry_run {
-        may_be_written("the loop", &out, file, asked.force)?;
-        let steps = found.steps().map_err(failed)?;
-        let keys = [
-            ("measured", "true".to_owned()),
-            ("source", found.source.clone()),
-            ("source_blake3", found.digest.clone()),
-            ("columns_read", found.curve.columns.join("; ")),
-        ];
-        write_table(&out, &steps, &keys).map_err(failed)?;
-    }
+    let found = evaluated(asked, file, &out)?;
     let written = (!asked.dry_run).then_some(out.as_path());
     if asked.json {
         say(&format!("{:#}\n", answer(&found, written)))?;
@@ -44,6 +31,85 @@ pub(super) fn import(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> 
         say(&text(&found, file, written))?;
     }
     Ok(0)
+}
+
+/// Evaluates several loops, each with a table of its own, and names the loops that fail.
+pub(super) fn import_all(asked: &ImportArguments) -> Result<u8, Fault> {
+    let others: Vec<String> =
+        asked.files.iter().filter(|file| !is_meant(asked, file)).map(|file| shown(file)).collect();
+    if !others.is_empty() {
+        return Err(failed(format!(
+            "cannot import loops and other files in one command: {} {} no force and displacement in the \
+             heading\nhelp: import them separately, or give --loop if they are loops",
+            others.join(", "),
+            if others.len() == 1 { "has" } else { "have" }
+        )));
+    }
+    let outs = tables(asked)?;
+    if let Some(folder) = asked.out.as_ref().filter(|_| !asked.dry_run) {
+        make_folder(folder)?;
+    }
+    let (mut texts, mut answers, mut left) = (String::new(), Vec::new(), Vec::new());
+    for (file, out) in asked.files.iter().zip(&outs) {
+        match evaluated(asked, file, out) {
+            Ok(found) => {
+                let written = (!asked.dry_run).then_some(out.as_path());
+                texts += &format!("{}\n", text(&found, file, written));
+                answers.push(answer(&found, written));
+            }
+            Err(fault) => left.push((shown(file), fault.text.trim_start_matches("error: ").to_owned())),
+        }
+    }
+    if answers.is_empty() {
+        let (problem, help) =
+            left.first().and_then(|(_, why)| why.split_once("\nhelp: ")).unwrap_or_default();
+        return Err(failed(format!("no loop of {} files was read: {problem}\nhelp: {help}", outs.len())));
+    }
+    if asked.json {
+        let left: Vec<Value> = left.iter().map(|(name, why)| json!({ "name": name, "why": why })).collect();
+        say(&format!("{:#}\n", json!({ "loops": answers, "left_out": left })))?;
+    } else {
+        say(&texts)?;
+        for (_, why) in &left {
+            say(&wrapped(&format!("warning: left out: {}", why.replace('\n', "; ")), "  "))?;
+        }
+    }
+    Ok(if left.is_empty() { 0 } else { FAILED_CASES })
+}
+
+/// Tables of several loops: in the folder of `--out`, or in the present folder.
+fn tables(asked: &ImportArguments) -> Result<Vec<PathBuf>, Fault> {
+    let folder = asked.out.clone().unwrap_or_default();
+    let outs: Vec<PathBuf> = asked.files.iter().map(|file| folder.join(named_after(file))).collect();
+    let twice = outs.iter().enumerate().find(|(place, out)| outs[..*place].contains(out));
+    match twice {
+        Some((place, out)) => Err(failed(format!(
+            "cannot write two loops to {}: {} has the name of an earlier file\nhelp: import it separately, \
+             with --out",
+            shown(out),
+            shown(&asked.files[place])
+        ))),
+        None => Ok(outs),
+    }
+}
+
+/// A loop, with its points in a table unless nothing is to be written.
+fn evaluated(asked: &ImportArguments, file: &Path, out: &Path) -> Result<MeasuredLoop, Fault> {
+    let options = options(asked, file)?;
+    let source = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let found = measure_loop(file, &source, &options).map_err(failed)?;
+    if !asked.dry_run {
+        may_be_written("the loop", out, file, asked.force)?;
+        let steps = found.steps().map_err(failed)?;
+        let keys = [
+            ("measured", "true".to_owned()),
+            ("source", found.source.clone()),
+            ("source_blake3", found.digest.clone()),
+            ("columns_read", found.curve.columns.join("; ")),
+        ];
+        write_table(out, &steps, &keys).map_err(failed)?;
+    }
+    Ok(found)
 }
 
 /// Radii of probes \[m\]: a number without a unit is in metres, and 20 for 20 µm is refused.

@@ -24,11 +24,12 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     let folder = asked.out.clone().unwrap_or_else(|| named_after(&asked.files[0]));
     let (found, mut left, notes) = inputs(asked, &work)?;
     let mut taken = Vec::new();
-    let mut digests: Vec<(String, String)> = Vec::new();
+    let (mut digests, mut differing) = (Vec::<(String, String)>::new(), Vec::new());
     for input in &found {
         match read(input, &mut digests) {
             Ok(Some((imported, examined))) => {
                 let out = unused(&folder, input, &taken);
+                differing.extend(difference(input, &imported));
                 taken.push(Taken { label: input.label.clone(), imported, examined, out });
             }
             Ok(None) => {}
@@ -48,6 +49,7 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
         ranges: &ranges,
         left: &left,
         notes: &notes,
+        differing: &differing,
         sample: &sample,
         written: written.as_deref(),
     };
@@ -89,6 +91,25 @@ fn measured(input: &Input, digest: &str) -> Result<Imported, StageError> {
     }
 }
 
+/// Relative difference of two sizes that are the same.
+const SAME: f64 = 1e-3;
+
+/// A size in the metadata of a container that differs from that of the file, as a warning.
+fn difference(input: &Input, imported: &Imported) -> Option<String> {
+    let MeasuredSurface { size_m, size_y_m, transpose, .. } = input.stated.as_ref()?;
+    let of = imported.header.measured.as_ref().filter(|_| imported.height_factor_m.is_some())?;
+    let along = |k: usize| of.source_point_counts[k] as f64 * of.source_spacings_m[k];
+    let [x, y] = if *transpose { [along(1), along(0)] } else { [along(0), along(1)] };
+    let differs = |stated: f64, own: f64| stated > 0.0 && (stated / own - 1.0).abs() > SAME;
+    (differs(*size_m, x) || differs(*size_y_m, y)).then(|| {
+        format!(
+            "{}: a size of {size_m:.4e} m x {size_y_m:.4e} m in index.json, of {x:.4e} m x {y:.4e} m in the \
+             file: that of the file is used. Check size and unit, and give --size if the file is wrong",
+            input.label
+        )
+    })
+}
+
 /// The reason of an error without the path of a file that was unpacked.
 fn reason(error: &StageError, path: &Path, label: &str) -> String {
     let why = if let StageError::Measured { why, .. } = error { why.clone() } else { error.to_string() };
@@ -98,10 +119,14 @@ fn reason(error: &StageError, path: &Path, label: &str) -> String {
 /// The error of files of which none was read.
 fn nothing(files: &[PathBuf], left: &[Left]) -> Fault {
     let names: Vec<String> = files.iter().map(|file| shown(file)).collect();
-    let reasons: String = left.iter().map(|of| format!("\n  {}: {}", of.label, of.why)).collect();
+    let parts = || left.iter().map(|of| of.why.split_once("\nhelp: ").unwrap_or((&of.why, "")));
+    let reason = |(of, (why, _)): (&Left, (&str, &str))| format!("\n  {}: {why}", of.label);
+    let reasons: String = left.iter().zip(parts()).map(reason).collect();
+    let help = parts().map(|(_, help)| help).find(|help| !help.is_empty());
     failed(format!(
-        "cannot import {}: no scan was read{reasons}\nhelp: import one of the files alone for its options",
-        names.join(", ")
+        "cannot import {}: no scan was read{reasons}\nhelp: {}",
+        names.join(", "),
+        help.unwrap_or("import one of the files alone for its options")
     ))
 }
 

@@ -21,6 +21,8 @@ pub(super) struct Shown<'a> {
     pub(super) ranges: &'a [Range<'a>],
     pub(super) left: &'a [Left],
     pub(super) notes: &'a [String],
+    /// Sizes that differ from those in the metadata of a container.
+    pub(super) differing: &'a [String],
     pub(super) sample: &'a Sample,
     /// Table of the scans and common spectrum, if files were written.
     pub(super) written: Option<&'a [PathBuf]>,
@@ -61,6 +63,7 @@ impl Shown<'_> {
     fn warnings(&self) -> Vec<String> {
         let mut warnings: Vec<String> =
             self.left.iter().map(|of| format!("{}: {}", of.label, of.why.replace('\n', "; "))).collect();
+        warnings.extend_from_slice(self.differing);
         let others = self.taken.len() - self.of_case().len();
         if others > 0 {
             warnings.push(format!(
