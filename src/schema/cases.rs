@@ -1,6 +1,7 @@
 //! The table of cases: means over realizations.
 
 use super::event_kinds::event_kinds;
+use super::grid_errors::GRID_ERRORS;
 use super::parameters::PARAMETER_COLUMNS;
 use super::realizations::{CASE, MAX_LOAD};
 use super::{Column, Table, count, join, real, text};
@@ -400,6 +401,7 @@ static CASE_COLUMNS: [Column;
         + SPREAD_COLUMNS.len()
         + PART_SPREAD_COLUMNS.len()
         + VALIDITY_COLUMNS.len()
+        + GRID_ERRORS.len()
         + COUNTS.len()] = join(&[
     CASE,
     &PARAMETER_COLUMNS,
@@ -407,6 +409,7 @@ static CASE_COLUMNS: [Column;
     &SPREAD_COLUMNS,
     &PART_SPREAD_COLUMNS,
     &VALIDITY_COLUMNS,
+    GRID_ERRORS,
     COUNTS,
 ]);
 
