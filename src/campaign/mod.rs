@@ -235,10 +235,17 @@ impl Campaign {
         campaign
     }
 
+    /// Cases that are not only coarser grids of others.
+    pub fn shown_cases(&self) -> impl Iterator<Item = &CaseUnit> {
+        self.cases.iter().filter(|unit| !unit.case.is_coarser_grid())
+    }
+
     /// Number of realizations of the cases, as in "6 realizations" or "6 to 14 realizations".
     #[must_use]
     pub fn realizations_in_words(&self) -> String {
-        match (self.counts.iter().min(), self.counts.iter().max()) {
+        let shown = || self.cases.iter().zip(&self.counts).filter(|(unit, _)| !unit.case.is_coarser_grid());
+        let counts = || shown().map(|(_, count)| count);
+        match (counts().min(), counts().max()) {
             (Some(1), Some(1)) => "1 realization".to_owned(),
             (Some(least), Some(most)) if least < most => format!("{least} to {most} realizations"),
             (least, _) => format!("{} realizations", least.copied().unwrap_or_default()),

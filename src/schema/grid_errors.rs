@@ -73,11 +73,7 @@ const ON_GRID: &[&[Column]] = &[
     on_grid!("area_at_max_load", "area", "contact area A/A0 at load reversal"),
     on_grid!("pull_off_load", "pull_off", "pull-off force F_po/(E* A0)"),
     on_grid!("loss", "loss", "dissipated energy Θ/(E* A0 h_rms) of the loop"),
-    on_grid!(
-        "dissipated_loading",
-        "loading",
-        "dissipated energy over E* A0 h_rms of events during loading"
-    ),
+    on_grid!("dissipated_loading", "loading", "dissipated energy over E* A0 h_rms of events during loading"),
     on_grid!(
         "dissipated_unloading",
         "unloading",

@@ -1,6 +1,6 @@
 //! The different cases of a spec.
 
-use super::{Case, CaseParams};
+use super::{COARSER, Case, CaseParams};
 use std::collections::HashMap;
 
 /// The different cases, in the order of their first appearance.
@@ -24,6 +24,10 @@ impl Cases {
             if !known.contains(sweep) {
                 known.push(sweep.clone());
             }
+        }
+        // A case of the spec is more than a coarser grid of another one.
+        if known.len() > 1 {
+            known.retain(|name| name != COARSER);
         }
         place
     }

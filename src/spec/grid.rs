@@ -8,6 +8,7 @@ use toml::Spanned;
 
 use super::auto::Choices;
 use super::cases::Cases;
+use super::coarser::{self, points_of};
 use super::elements::check_elements;
 use super::fault::Faults;
 use super::files::named;
@@ -21,7 +22,7 @@ use super::values::Values;
 use super::walk::{Draft, Origin};
 use crate::model::{CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource};
 
-use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
+use super::{Axis, COARSER, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
 
 /// The sweep that a case without sweeps belongs to.
 const BASE: &str = "base";
@@ -29,19 +30,23 @@ const BASE: &str = "base";
 /// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no
 /// name.
 pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
-    let Draft { mut base, origins, sweeps, .. } = draft;
+    let Draft { mut base, origins, sweeps, coarser: coarser_grids, .. } = draft;
     let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
     if too_many(&read, faults) {
         return None;
     }
-    let mut cases = Cases::default();
+    let (mut cases, mut coarser) = (Cases::default(), Vec::new());
     let (mut choices, mut auto_cases) = (Choices::of(draft.auto_methods), Vec::new());
     let mut add =
         |mut values: Values, origins: &[Origin], swept: &[usize], sweep: &str, faults: &mut Faults<'_>| {
             complete(&mut values, origins);
             let is_auto = choices.choose(&mut values);
             let params = values.case();
+            let known = faults.count();
             check(&params, &values, (origins, swept), faults);
+            if faults.count() == known {
+                coarser.extend(coarser::cases(&coarser_grids, &values, (origins, swept), faults));
+            }
             auto_cases.extend(Some(cases.add(&[sweep.to_owned()], params)).filter(|_| is_auto));
         };
     if sweeps.is_empty() {
@@ -57,6 +62,9 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             }
             add(values, &origins, &swept, &sweep.name, faults);
         }
+    }
+    for params in coarser {
+        cases.add(&[COARSER.to_owned()], params);
     }
     complete(&mut base, &origins);
     // Of a sweep with a fault the cases are unknown.
@@ -81,6 +89,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
         experiment: draft.experiment,
         cases: cases.list,
         base,
+        coarser_points: points_of(&coarser_grids),
         sweeps,
         auto_methods,
         auto_cases,

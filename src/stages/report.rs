@@ -167,11 +167,11 @@ fn page(
     statistics: &Statistics,
     drawings: &Drawings,
 ) -> Result<String, StageError> {
-    let elements = campaign.cases.iter().filter(|unit| unit.case.params.elements().is_some()).count();
+    let elements = campaign.shown_cases().filter(|unit| unit.case.params.elements().is_some()).count();
     Ok(report::page(&Report {
         name: &campaign.spec.name,
         key,
-        case_counts: [campaign.cases.len() - elements, elements],
+        case_counts: [campaign.shown_cases().count() - elements, elements],
         seed: campaign.spec.seed,
         realizations_text: &campaign.realizations_in_words(),
         failures: &failures(campaign, standings),
@@ -257,7 +257,7 @@ pub(super) fn pictures(stem: &str, svg: &str, files: &Figures) -> Result<Vec<(St
 
 fn sweeps(campaign: &Campaign) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for name in campaign.cases.iter().flat_map(|unit| &unit.case.sweeps) {
+    for name in campaign.shown_cases().flat_map(|unit| &unit.case.sweeps) {
         if !names.contains(name) {
             names.push(name.clone());
         }

@@ -5,9 +5,9 @@
 //! the means over the surfaces that all grids have: there, events that single surfaces skip on one grid
 //! average out.
 
-use super::rows::{Rows, Value};
+use super::rows::Rows;
 use super::{CaseInput, Given, StatsError};
-use crate::schema::{GRIDS, Table};
+use crate::schema::GRIDS;
 use crate::store::{ColumnData, Frame};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -125,10 +125,8 @@ struct Loops<'a> {
 
 impl<'a> Loops<'a> {
     fn of(realizations: &'a Frame, inputs: &'a [CaseInput]) -> Result<Self, StatsError> {
-        let families: HashMap<&str, &str> = inputs
-            .iter()
-            .filter_map(|case| Some((case.case_id.as_str(), case.family.as_deref()?)))
-            .collect();
+        let families: HashMap<&str, &str> =
+            inputs.iter().filter_map(|case| Some((case.case_id.as_str(), case.family.as_deref()?))).collect();
         let (case_ids, loads) = (realizations.text("case_id")?, realizations.f64("max_load")?);
         let numbers = realizations.i64("realization")?;
         let points = realizations.f64_or_null("elements_per_wavelength")?;
@@ -158,7 +156,8 @@ impl<'a> Loops<'a> {
     fn errors(&self, row: usize, rule: GridRule) -> Errors {
         let Some((family, load, realization)) = self.keys[row] else { return Errors::default() };
         let of_surface = self.rows[&(family, load)].iter().filter(|other| {
-            self.keys[**other].is_some_and(|key| key.2 == realization) && self.points[**other] < self.points[row]
+            self.keys[**other].is_some_and(|key| key.2 == realization)
+                && self.points[**other] < self.points[row]
         });
         // Equal grids of different cases count once.
         let mut coarser: Vec<usize> = of_surface.copied().collect();
@@ -185,8 +184,11 @@ impl<'a> Loops<'a> {
         let Some(own) = by_case.remove(case.case_id.as_str()) else { return Vec::new() };
         let resolution = |rows: &[usize]| mean(rows.iter().map(|row| self.points[*row]));
         let finest = resolution(&own);
-        let mut all: Vec<(f64, Vec<usize>)> =
-            by_case.into_values().map(|rows| (resolution(&rows), rows)).filter(|(of, _)| *of < finest).collect();
+        let mut all: Vec<(f64, Vec<usize>)> = by_case
+            .into_values()
+            .map(|rows| (resolution(&rows), rows))
+            .filter(|(of, _)| *of < finest)
+            .collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         all.dedup_by(|a, b| a.0 == b.0);
         all.push((finest, own));
@@ -207,7 +209,12 @@ impl<'a> Loops<'a> {
                 let coarser = series.last().map_or(&[][..], |grid| &grid.values[place]);
                 [coarser, &[of_common(rows, place, &common[place])]].concat()
             });
-            series.push(Grid { case_id: self.case_ids[rows[0]], points, values, surface_count: common[2].len() });
+            series.push(Grid {
+                case_id: self.case_ids[rows[0]],
+                points,
+                values,
+                surface_count: common[2].len(),
+            });
         }
         series
     }
