@@ -71,8 +71,9 @@ impl Stage {
             Self::Extract => 3,
             // 18: status and cause of each event, estimates of the cycle.
             Self::Cycle => 18,
-            Self::Aggregate => 12,
-            Self::Report => 15,
+            // 13: grid errors.
+            Self::Aggregate => 13,
+            Self::Report => 16,
         }
     }
 }

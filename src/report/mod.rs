@@ -7,6 +7,7 @@ mod comparison;
 mod data;
 mod experiment;
 mod failures;
+mod grids;
 mod header;
 mod layout;
 mod live;
@@ -23,6 +24,7 @@ mod works;
 pub use comparison::{Compared, comparison_page};
 pub use experiment::MeasuredLoops;
 pub use failures::Failure;
+pub use grids::Grids;
 pub use live::{LiveLoop, LiveRun, LiveStage, live_page};
 pub use methods::MethodFigures;
 pub use single_cycle::SingleCycle;
@@ -76,6 +78,8 @@ pub struct Report<'a> {
     pub scan_spectra: Option<&'a ScanSpectra>,
     /// Measured loops, if the spec has any.
     pub measured_loops: Option<&'a MeasuredLoops>,
+    /// Discretization errors of boundary elements.
+    pub grids: Option<&'a Grids>,
     /// Works of adhesion over the cut-off wavelength.
     pub works: Option<&'a Works>,
     /// Names of the sweeps, in order.
@@ -119,6 +123,9 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
             @for sweep in report.sweeps { (figures(report, sweep, &numbers)) }
             @if !report.cycles.is_empty() { (single_cycle::section(&numbers, report.cycles)) }
             @if let Some(data) = report.explorer { (explorer(data, cases.has_spots()?)) }
+            @if let Some(of) = report.grids {
+                @if let Some(section) = grids::section(of, &cases, &numbers)? { (section) }
+            }
             (theories::theories(&cases)?)
             @if let Some(of) = report.works { (works::section(of, &cases, &numbers)?) }
             (validity::budget(&cases)?)

@@ -95,7 +95,7 @@ pub const CAUTIONS: [Caution; 28] = [
         "coarse grid",
         "boundary elements have {} grid points per shortest wavelength",
         "Dissipated energy and pull-off force depend on the grid.",
-        "Increase `boundary_elements.points`.",
+        "Increase `boundary_elements.points`; a list of grids estimates the error.",
     ),
     warning(
         "full_contact",
