@@ -8,11 +8,8 @@ use std::ops::Range;
 
 use toml::de::DeValue;
 
-use super::elements::check_elements;
 use super::fault::Faults;
 use super::keys::{KEYS, find};
-use super::values::Values;
-use super::walk::Origin;
 use super::written::Written;
 use super::{Case, CaseParams, Value, value};
 use crate::model::MethodOptions;
@@ -99,28 +96,6 @@ pub(super) fn points_of(grids: &[Coarser]) -> Vec<u32> {
 }
 
 /// Place of the key among all keys.
-fn key() -> Option<usize> {
+pub(super) fn key() -> Option<usize> {
     KEY.split_once('.').and_then(|(table, name)| find(table, name))
-}
-
-/// The cases of a case on coarser grids; none where a sweep sets the grid, and for asperities.
-pub(super) fn cases(
-    grids: &[Coarser],
-    values: &Values,
-    (origins, swept): (&[Origin], &[usize]),
-    faults: &mut Faults<'_>,
-) -> Vec<CaseParams> {
-    let Some(key) = key().filter(|key| !swept.contains(key)) else { return Vec::new() };
-    let mut found = Vec::new();
-    for (points, span) in grids {
-        let (mut values, mut origins) = (values.clone(), origins.to_vec());
-        (KEYS[key].set)(&mut values, &Value::Count(*points));
-        origins[key] = Origin::Written(span.clone());
-        let params = values.case();
-        if let Some(options) = params.elements() {
-            check_elements(&params, options, &values, &origins, faults);
-            found.push(params);
-        }
-    }
-    found
 }

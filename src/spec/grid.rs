@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::auto::Choices;
 use super::cases::Cases;
-use super::coarser::{self, points_of};
+use super::coarser::{self, Coarser, points_of};
 use super::elements::check_elements;
 use super::fault::Faults;
 use super::files::named;
@@ -45,7 +45,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             let known = faults.count();
             check(&params, &values, (origins, swept), faults);
             if faults.count() == known {
-                coarser.extend(coarser::cases(&coarser_grids, &values, (origins, swept), faults));
+                coarser.extend(on_coarser(&coarser_grids, &values, (origins, swept), faults));
             }
             auto_cases.extend(Some(cases.add(&[sweep.to_owned()], params)).filter(|_| is_auto));
         };
@@ -176,6 +176,28 @@ fn complete(values: &mut Values, origins: &[Origin]) {
     if is_on_half_space && find("machine", "compliance").is_some_and(unwritten) {
         values.machine.far_field = FarField::HalfSpace;
     }
+}
+
+/// The cases of a case on coarser grids; none where a sweep sets the grid, and for asperities.
+fn on_coarser(
+    grids: &[Coarser],
+    values: &Values,
+    (origins, swept): (&[Origin], &[usize]),
+    faults: &mut Faults<'_>,
+) -> Vec<CaseParams> {
+    let Some(key) = coarser::key().filter(|key| !swept.contains(key)) else { return Vec::new() };
+    let mut found = Vec::new();
+    for (points, span) in grids {
+        let (mut values, mut origins) = (values.clone(), origins.to_vec());
+        (KEYS[key].set)(&mut values, &Value::Count(*points));
+        origins[key] = Origin::Written(span.clone());
+        let params = values.case();
+        if let Some(options) = params.elements() {
+            check_elements(&params, options, &values, &origins, faults);
+            found.push(params);
+        }
+    }
+    found
 }
 
 /// Checks what depends on two values of a case.

@@ -5,15 +5,15 @@ use super::cycle_input::{cycle_input, of_failed};
 use super::done::{Clock, Outcome};
 use super::error::incomplete;
 use super::extent::{Extent, common, own_file};
+use super::grids::grid_rule;
 use super::measured_loop::{self, MeasuredLoop, measure_loop};
 use super::runner::{Context, Single, run_single};
 use super::surface::scale;
 use super::{StageError, Tally, cutoff, datapackage, scan_spectra};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Choice;
-use crate::physics::theory::grid_convergence::grid_error;
 use crate::spec::CaseParams;
-use crate::stats::{self, CaseInput, CycleInput, Given, GridEstimate, Planned, WithGridErrors};
+use crate::stats::{self, CaseInput, CycleInput, Given, Planned, WithGridErrors};
 use crate::store::commit::Written;
 use crate::store::{Check, Frame, commit, parquet};
 use rayon::prelude::*;
@@ -108,12 +108,6 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
         files.push(commit::commit_bytes("describe the tables in", &path, text.as_bytes())?);
     }
     Ok(files)
-}
-
-/// Discretization error of the value on the finest of several grids.
-fn grid_rule(points: &[f64], values: &[f64]) -> Option<GridEstimate> {
-    let found = grid_error(points, values).ok()?;
-    Some(GridEstimate { relative: found.relative, extrapolated: found.extrapolated })
 }
 
 /// The inputs without cases that are only coarser grids of others.

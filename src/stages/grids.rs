@@ -1,16 +1,23 @@
-//! Discretization errors for the report: the table of grids and its figures.
+//! Discretization errors: the rule of an estimate, and for the report the table of grids and its figures.
 
 use super::StageError;
 use crate::campaign::Campaign;
 use crate::figures::{OfGrids, over_grids};
+use crate::physics::theory::grid_convergence::grid_error;
 use crate::report::Grids;
 use crate::schema::GRIDS;
-use crate::stats::{listing, loads};
+use crate::stats::{GridEstimate, listing, loads};
 use crate::store::Frame;
 use crate::store::parquet::read_table;
 
 /// Cases with a figure.
 const MOST_PANELS: usize = 4;
+
+/// Discretization error of the value on the finest of several grids.
+pub(super) fn grid_rule(points: &[f64], values: &[f64]) -> Option<GridEstimate> {
+    let found = grid_error(points, values).ok()?;
+    Some(GridEstimate { relative: found.relative, extrapolated: found.extrapolated })
+}
 
 /// The table `grids` with a figure of each of the first cases, at its largest load; nothing if an earlier
 /// version of the program wrote the statistics.

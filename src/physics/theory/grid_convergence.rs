@@ -53,16 +53,27 @@ pub struct GridError {
     pub order: Option<f64>,
 }
 
+/// Kind of a series of three grids.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Series {
+    /// Monotone, with an observed order within [`ORDERS`].
+    Regular(f64),
+    /// Monotone, and faster than [`ORDERS`].
+    Fast,
+    /// Slower, or not monotone.
+    Irregular,
+}
+
 /// Discretization error of the value on the finest of two or more grids.
 ///
 /// `points` are the grid points N per side, ascending, and `values` the values on these grids, in any unit.
-/// The three finest grids decide, or two if there are no more:
+/// The three finest grids decide, or two if there are no more. R is the range of their values:
 ///
 /// - three grids, monotone, observed order p in 0.6 to 2.2: `1.25 |φ₃ − φ₂|/((N₃/N₂)^p − 1)`, with p from
 ///   `(φ₂ − φ₁)/(φ₃ − φ₂) = (h₁^p − h₂^p)/(h₂^p − h₃^p)`, h = 1/N;
-/// - two grids: `2 |φ₂ − φ₁|/(N₂/N₁ − 1)`, which takes the order as 1;
-/// - any other three grids: `1.25 R max(1, 1/((N₃/N₁)^0.6 − 1))` with the difference R of the largest and the
-///   smallest value. The second argument is the distance to the limit of the smallest order.
+/// - monotone with a larger order: `1.25 R/(N₃/N₁ − 1)`, the first order between the outer grids;
+/// - any other three grids: `1.25 R max(1, 1/((N₃/N₁)^0.6 − 1))`, at least the smallest order;
+/// - two grids: `2 R/(N₂/N₁ − 1)`, which takes the order as 1.
 ///
 /// The relative error is at least 0.5 %, the scatter of loops by the size of their steps. The estimate assumes
 /// that the grids resolve the events that dissipate most of the energy. Its interval holds 95 % of the exact
@@ -76,39 +87,48 @@ pub fn grid_error(points: &[f64], values: &[f64]) -> Result<GridError, PhysicsEr
     check(points, values)?;
     let first = points.len().saturating_sub(3);
     let (points, values) = (&points[first..], &values[first..]);
-    let finest = values[values.len() - 1];
-    let regular = observed_order(points, values);
-    let (error, extrapolated) = match (points, values, regular) {
-        ([n1, n2], [v1, v2], _) => (TWO_GRIDS * (v2 - v1).abs() / (n2 / n1 - 1.0), None),
-        ([_, n2, n3], [_, v2, v3], Some(order)) => {
-            let rest = (v3 - v2) / ((n3 / n2).powf(order) - 1.0);
-            (THREE_GRIDS * rest.abs(), Some(v3 + rest))
-        }
-        _ => {
-            let slowest = 1.0 / ((points[points.len() - 1] / points[0]).powf(ORDERS[0]) - 1.0);
-            (THREE_GRIDS * range(values) * slowest.max(1.0), None)
-        }
+    let last = values.len() - 1;
+    let (finest, refined) = (values[last], points[last] / points[0]);
+    let spread = range(values);
+    let (error, series) = match (points, values) {
+        ([_, n2, n3], [_, v2, v3]) => match series(points, values) {
+            Series::Regular(order) => {
+                let rest = (v3 - v2) / ((n3 / n2).powf(order) - 1.0);
+                (THREE_GRIDS * rest.abs(), Some((order, v3 + rest)))
+            }
+            Series::Fast => (THREE_GRIDS * spread / (refined - 1.0), None),
+            Series::Irregular => {
+                (THREE_GRIDS * spread * (1.0 / (refined.powf(ORDERS[0]) - 1.0)).max(1.0), None)
+            }
+        },
+        _ => (TWO_GRIDS * spread / (refined - 1.0), None),
     };
     let absolute = error.max(FLOOR * finest.abs());
     let relative = if absolute == 0.0 { FLOOR } else { absolute / finest.abs() };
-    Ok(GridError { relative, absolute, extrapolated, order: regular })
+    let [order, extrapolated] = [series.map(|of| of.0), series.map(|of| of.1)];
+    Ok(GridError { relative, absolute, extrapolated, order })
 }
 
-/// Observed order of a regular series of three grids.
-fn observed_order(points: &[f64], values: &[f64]) -> Option<f64> {
-    let ([n1, n2, n3], [v1, v2, v3]) = (points, values) else { return None };
-    let ratio = (v2 - v1) / (v3 - v2);
+/// Kind of a series of three grids.
+fn series(points: &[f64], values: &[f64]) -> Series {
+    let ([n1, n2, n3], [v1, v2, v3]) = (points, values) else { return Series::Irregular };
+    let [first, second] = [v2 - v1, v3 - v2];
     // Rises with the order.
     let of = |order: f64| ((n2 / n1).powf(order) - 1.0) / (1.0 - (n2 / n3).powf(order));
+    let ratio = (first / second).abs();
     let [mut low, mut high] = ORDERS;
-    if !(of(low)..=of(high)).contains(&ratio) {
-        return None;
+    // Not a number for equal values.
+    if first * second < 0.0 || ratio.is_nan() || ratio < of(low) {
+        return Series::Irregular;
+    }
+    if ratio > of(high) {
+        return Series::Fast;
     }
     for _ in 0..BISECTIONS {
         let middle = low.midpoint(high);
         *(if of(middle) < ratio { &mut low } else { &mut high }) = middle;
     }
-    Some(low.midpoint(high))
+    Series::Regular(low.midpoint(high))
 }
 
 /// Difference of the largest and the smallest value.
