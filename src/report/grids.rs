@@ -17,10 +17,10 @@ pub struct Grids {
     pub panels: Vec<Panel>,
 }
 
-const NOTE: &str = "Results by boundary elements with their estimated relative error of the finest grid: contact \
-    area A, pull-off force F_{po}, dissipated energy Θ and its parts of events on loading and unloading. The \
-    errors follow from the means over the surfaces that all grids have, after Roache (1994): with a factor of \
-    safety of 1.25 for three grids and 2 for two. N: grid points per shortest wavelength, of all grids. \
+const NOTE: &str = "Estimated relative errors of results by boundary elements on the finest grid: contact \
+    area A, pull-off force F_{po}, dissipated energy Θ and its parts of events on loading and unloading. \
+    The errors follow from the means over surfaces that all grids have, after Roache (1994): with a factor \
+    of safety of 1.25 for three grids and 2 for two. N: grid points per shortest wavelength, of all grids. \
     Extrapolated Θ: value on an infinitely fine grid, where three grids have a regular series.";
 
 /// Columns of errors with their heads.
@@ -38,7 +38,7 @@ pub(super) fn section(
     cases: &Cases<'_>,
     numbers: &Numbers<'_>,
 ) -> Result<Option<Markup>, StatsError> {
-    let help = grid_help(cases.frame)?;
+    let help = grid_help(cases.frame, &(0..cases.frame.row_count()).collect::<Vec<_>>())?;
     let rows: Vec<Markup> =
         cases.rows().iter().map(|listed| row(of, cases, listed)).collect::<Result<Vec<_>, _>>()?.concat();
     if rows.is_empty() && help.is_none() {
@@ -57,7 +57,7 @@ pub(super) fn section(
             (wide("grid-error", &head, &rows))
             @if !of.panels.is_empty() { (grid(numbers, &of.panels)) }
         }
-        @if let Some(help) = &help { p { @if rows.is_empty() { "Help: " } @else { "Other cases: " } (plain(help)) "." } "\n" }
+        @if let Some(help) = &help { p { (plain(help)) "." } "\n" }
     }))
 }
 

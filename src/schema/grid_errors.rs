@@ -11,8 +11,8 @@ macro_rules! error {
             concat!($stem, "_grid_error"),
             "1",
             concat!(
-                "Estimated relative discretization error of boundary elements, from coarser grids on the same \
-                 surfaces: ",
+                "Estimated relative discretization error of boundary elements, from coarser grids on the \
+                 same surfaces: ",
                 $what,
                 "; null without coarser grids"
             ),
@@ -90,7 +90,7 @@ pub static GRIDS: Table = Table {
     name: "grids",
     version: 1,
     file: "statistics/grids.parquet",
-    doc: "One row per case by boundary elements with coarser grids, load reversal and grid, the finest last, at \
-          most three. Without such a case the table has no row.",
+    doc: "One row per case by boundary elements with coarser grids, load reversal and grid, the finest last, \
+          at most three. Without such a case the table has no row.",
     columns: &COLUMNS,
 };

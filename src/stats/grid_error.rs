@@ -172,7 +172,7 @@ impl<'a> Loops<'a> {
         })
     }
 
-    /// Grids of a case at a load reversal, the finest last: those of its family that are coarser, and its own.
+    /// Grids of a case at a load reversal, the finest last: the coarser ones of its family, and its own.
     /// Empty without a finished loop.
     fn series(&self, case: &CaseInput, max_load: f64) -> Vec<Grid<'a>> {
         let Some(family) = case.family.as_deref() else { return Vec::new() };

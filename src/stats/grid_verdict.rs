@@ -33,25 +33,26 @@ impl<'a> Columns<'a> {
         })
     }
 
-    /// Θ of a finished row by boundary elements with its errors; nothing for other rows.
+    /// Mean of a row by boundary elements.
+    fn mean(&self, row: usize) -> Option<f64> {
+        self.means[row].filter(|_| self.methods[row] == Method::BoundaryElements.word())
+    }
+
+    /// Θ of a row with a grid error.
     fn sentence(&self, row: usize) -> Option<String> {
-        let mean = self.means[row].filter(|_| self.methods[row] == Method::BoundaryElements.word())?;
-        let of_grid = self.grid[row].map_or_else(
-            || " (grid error unknown)".to_owned(),
-            |error| format!(" ± {} (grid)", percent(error)),
-        );
+        let (mean, error) = self.mean(row).zip(self.grid[row])?;
         let surfaces = count(self.done[row]);
         let of_surfaces = self.highs[row].filter(|_| mean != 0.0).map_or_else(
             || format!(" ({surfaces})"),
             |high| format!(" ± {} ({surfaces})", percent((high - mean) / mean.abs())),
         );
-        Some(format!("Θ = {}{of_grid}{of_surfaces}", number(mean)))
+        Some(format!("Θ = {} ± {} (grid){of_surfaces}", number(mean), percent(error)))
     }
 }
 
-/// `Θ = 1.46e-3 ± 3 % (grid) ± 12 % (six surfaces)` of a row of the table `cases`: the mean over E* A0 h_rms, its
-/// estimated discretization error, and the half-width of its 95 % confidence interval. Nothing for the
-/// asperity model and without a result.
+/// `Θ = 1.46e-3 ± 3 % (grid) ± 12 % (six surfaces)` of a row of the table `cases`: the mean over
+/// E* A0 h_rms, its estimated discretization error, and the half-width of its 95 % confidence interval.
+/// Nothing without a discretization error.
 ///
 /// # Errors
 /// If the table lacks a column.
@@ -59,20 +60,20 @@ pub fn grid_verdict(cases: &Frame, row: usize) -> Result<Option<String>, StatsEr
     Ok(Columns::of(cases)?.sentence(row))
 }
 
-/// Help where a row by boundary elements has a result and no grid error; nothing otherwise.
+/// Help where some rows have results by boundary elements, and none has a grid error; nothing otherwise.
 ///
 /// # Errors
 /// If the table lacks a column.
-pub fn grid_help(cases: &Frame) -> Result<Option<String>, StatsError> {
-    let columns = Columns::of(cases)?;
-    let points = cases.f64_or_null("element_points")?;
-    let is_unknown = |row: &usize| columns.grid[*row].is_none() && columns.sentence(*row).is_some();
-    let Some(row) = (0..columns.means.len()).find(is_unknown) else { return Ok(None) };
-    let finest = points[row].unwrap_or(128.0);
-    Ok(Some(format!(
-        "grid error unknown; boundary_elements.points = [{}, {finest}] estimates it",
-        (finest / 2.0).round()
-    )))
+pub fn grid_help(cases: &Frame, rows: &[usize]) -> Result<Option<String>, StatsError> {
+    let (columns, points) = (Columns::of(cases)?, cases.f64_or_null("element_points")?);
+    let mut by_elements = rows.iter().copied().filter(|row| columns.mean(*row).is_some());
+    let Some(first) = by_elements.clone().next() else { return Ok(None) };
+    let finest = points[first].unwrap_or(128.0);
+    let is_unknown = by_elements.all(|row| columns.grid[row].is_none());
+    Ok(is_unknown.then(|| {
+        let coarser = (finest / 2.0).round();
+        format!("grid error unknown; boundary_elements.points = [{coarser}, {finest}] estimates it")
+    }))
 }
 
 /// Sentences on the listed rows, each with its case and load, and the rest of them as a number.

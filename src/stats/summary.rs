@@ -148,7 +148,8 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
                 .flat_map(|sentence| wrapped(&format!("Verdict: {sentence}"))),
         );
     }
-    lines.extend(grid_help(cases)?.map(|help| format!("help: {help}")));
+    let all: Vec<usize> = (0..cases.row_count()).collect();
+    lines.extend(grid_help(cases, &all)?.map(|help| format!("help: {help}")));
     lines.extend(in_si(cases)?);
     let mut head = vec![MEANS.to_owned(), loads_head(cases)?.to_owned(), results_head(cases)?];
     head.extend(compared.then(|| REFERENCE.to_owned()));

@@ -44,8 +44,8 @@ fn finished(spec: &str) -> (Bench, String) {
     (bench, said)
 }
 
-/// A list of grids and a sweep over them compute the same cycles, and the finest case has the same errors. Those of single surfaces and of means are
-/// the estimate from the values in the tables.
+/// A list of grids and a sweep over them compute the same cycles, and the finest case has the same errors. Those of single surfaces and of
+/// means are the estimate from the values in the tables.
 #[test]
 fn e2e_errors_of_a_list_are_those_of_a_sweep() {
     let (list, said) = finished(SPEC);
@@ -99,7 +99,7 @@ fn e2e_errors_of_a_list_are_those_of_a_sweep() {
         assert_eq!(text.matches("% (grid) ±").count(), rows, "{text}");
         assert!(text.contains("(two surfaces)") && text.lines().all(|line| line.chars().count() <= 80 || line.contains('/')), "{text}");
     }
-    assert!(!said.contains("grid error unknown") && of_sweep.contains("points = [8, 16] estimates it"), "{said}{of_sweep}");
+    assert!(!said.contains("grid error unknown") && !of_sweep.contains("grid error unknown"), "{said}{of_sweep}");
 }
 
 /// Loops on coarser grids are tasks: planned, counted and resumed. They are in no table of results, no figure and no explorer.
@@ -143,7 +143,6 @@ fn e2e_coarser_grids_are_tasks_and_no_cases() {
 fn e2e_without_coarser_grids_the_error_is_unknown() {
     let spec = SPEC.replace("[16, 32, 64]", "32").replace("[0.002, 0.004]", "[0.004]").replace("realizations = 2", "realizations = 1");
     let (bench, said) = finished(&spec);
-    assert!(said.contains("(grid error unknown) (one surface)"), "{said}");
     assert_eq!(said.matches("help: grid error unknown; boundary_elements.points = [16, 32] estimates it").count(), 1, "{said}");
     assert_eq!(statistics(&bench, &schema::GRIDS).row_count(), 0);
     // Of asperities nothing is said.

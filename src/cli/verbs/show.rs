@@ -116,9 +116,8 @@ fn of_case(campaign: &Campaign, place: usize, case: &CaseUnit) -> Result<Shown, 
         for row in &rows {
             found.verdicts.extend(grid_verdict(&frame, *row).map_err(failed)?);
         }
-        let help = grid_help(&frame).map_err(failed)?;
-        let is_open = found.verdicts.iter().any(|verdict| verdict.contains("unknown"));
-        found.verdicts.extend(help.filter(|_| is_open).map(|help| format!("help: {help}")));
+        let help = grid_help(&frame, &rows).map_err(failed)?;
+        found.verdicts.extend(help.map(|help| format!("help: {help}")));
         let warnings = warnings_of(&frame, &rows).map_err(failed)?;
         found.warnings = warnings
             .iter()

@@ -42,10 +42,10 @@ const fn row(name: &'static str, values: &'static [f64], meaning: &'static str) 
 /// Estimated discretization error of the value of the finest grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridError {
-    /// Half-width of the interval that is expected to hold the exact value, over the magnitude of the value of
-    /// the finest grid, at least 0.005. Infinite for a value of 0 in a series that is not constant.
+    /// Half-width of the interval that is expected to hold the exact value, over the magnitude of the value
+    /// of the finest grid, at least 0.005. Infinite for a value of 0 in a series that is not constant.
     pub relative: f64,
-    /// The same in the unit of the value.
+    /// Half-width in the unit of the value.
     pub absolute: f64,
     /// Value at `h → 0` of a regular series of three grids, in the unit of the value.
     pub extrapolated: Option<f64>,
@@ -75,9 +75,9 @@ enum Series {
 /// - any other three grids: `1.25 R max(1, 1/((N₃/N₁)^0.6 − 1))`, at least the smallest order;
 /// - two grids: `2 R/(N₂/N₁ − 1)`, which takes the order as 1.
 ///
-/// The relative error is at least 0.5 %, the scatter of loops by the size of their steps. The estimate assumes
-/// that the grids resolve the events that dissipate most of the energy. Its interval holds 95 % of the exact
-/// results of Johnson's sinusoid, of JKR spheres and of probes with waves
+/// The relative error is at least 0.5 %, the scatter of loops by the size of their steps. The estimate
+/// assumes that the grids resolve the events that dissipate most of the energy. Its interval holds 95 % of
+/// the exact results of Johnson's sinusoid, of JKR spheres and of probes with waves
 /// (`tests/physics/boundary_elements/grid_error.rs`).
 ///
 /// # Errors
