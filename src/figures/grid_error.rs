@@ -58,10 +58,10 @@ pub fn over_grids(grids: &Frame, of: &OfGrids<'_>, number: usize) -> Result<Opti
     let x = Axis::holding("1/N, spacing over shortest wavelength", [0.0, coarsest], true);
     let y = Axis::holding("over value on finest grid", curves.iter().flat_map(Curve::heights), false);
     let caption = format!(
-        "Dissipated energy Θ and pull-off force F_po on grids of N points per shortest wavelength, over \
-         their values on the finest grid, for {}: means over surfaces that all grids have. Bands: \
-         estimated error of the finest grid. Diamonds: extrapolated to an infinitely fine grid, where three grids have \
-         a regular series. Data: statistics/grids.parquet.{}",
+        "Θ and F_po on grids of N points per shortest wavelength over their values on the finest grid, for \
+         {}: means over surfaces that all grids have. Bands: estimated error of the finest grid. Diamonds: \
+         extrapolated to an infinitely fine grid, where three grids have a regular series. Data: \
+         statistics/grids.parquet.{}",
         of.label,
         captions::data(&name)
     );

@@ -11,6 +11,13 @@ pub(super) struct Cases {
 }
 
 impl Cases {
+    /// Adds cases that are only coarser grids of others.
+    pub(super) fn add_coarser(&mut self, all: Vec<CaseParams>) {
+        for params in all {
+            self.add(&[COARSER.to_owned()], params);
+        }
+    }
+
     /// Adds a case, or the names of its sweeps to an equal one; gives its place.
     pub(super) fn add(&mut self, sweeps: &[String], params: CaseParams) -> usize {
         // Every value is finite and none is a zero with a sign, so that equal cases are written alike, and

@@ -22,7 +22,7 @@ use super::values::Values;
 use super::walk::{Draft, Origin};
 use crate::model::{CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource};
 
-use super::{Axis, COARSER, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
+use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
 
 /// The sweep that a case without sweeps belongs to.
 const BASE: &str = "base";
@@ -42,11 +42,8 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             complete(&mut values, origins);
             let is_auto = choices.choose(&mut values);
             let params = values.case();
-            let known = faults.count();
             check(&params, &values, (origins, swept), faults);
-            if faults.count() == known {
-                coarser.extend(on_coarser(&coarser_grids, &values, (origins, swept), faults));
-            }
+            coarser.extend(on_coarser(&coarser_grids, &values, (origins, swept), faults));
             auto_cases.extend(Some(cases.add(&[sweep.to_owned()], params)).filter(|_| is_auto));
         };
     if sweeps.is_empty() {
@@ -63,9 +60,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             add(values, &origins, &swept, &sweep.name, faults);
         }
     }
-    for params in coarser {
-        cases.add(&[COARSER.to_owned()], params);
-    }
+    cases.add_coarser(coarser);
     complete(&mut base, &origins);
     // Of a sweep with a fault the cases are unknown.
     let files = if faults.count() == 0 {
@@ -187,6 +182,8 @@ fn on_coarser(
 ) -> Vec<CaseParams> {
     let Some(key) = coarser::key().filter(|key| !swept.contains(key)) else { return Vec::new() };
     let mut found = Vec::new();
+    // A case with a fault has no others.
+    let grids = if faults.count() == 0 { grids } else { &[] };
     for (points, span) in grids {
         let (mut values, mut origins) = (values.clone(), origins.to_vec());
         (KEYS[key].set)(&mut values, &Value::Count(*points));
