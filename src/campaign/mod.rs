@@ -71,8 +71,9 @@ impl Stage {
             Self::Extract => 3,
             // 18: status and cause of each event, estimates of the cycle.
             Self::Cycle => 18,
-            Self::Aggregate => 13,
-            Self::Report => 15,
+            // 14: grid errors, numbers of surfaces behind works of adhesion.
+            Self::Aggregate => 14,
+            Self::Report => 16,
         }
     }
 }
@@ -190,8 +191,8 @@ impl Campaign {
     /// Numbers of cases by the asperity model and by boundary elements.
     #[must_use]
     pub fn case_counts(&self) -> [usize; 2] {
-        let elements = self.cases.iter().filter(|unit| unit.case.params.elements().is_some()).count();
-        [self.cases.len() - elements, elements]
+        let elements = self.shown_cases().filter(|unit| unit.case.params.elements().is_some()).count();
+        [self.shown_cases().count() - elements, elements]
     }
 
     /// Tasks of a spec with the given number of realizations of each case.
@@ -242,10 +243,17 @@ impl Campaign {
         campaign
     }
 
+    /// Cases that are not only coarser grids of others.
+    pub fn shown_cases(&self) -> impl Iterator<Item = &CaseUnit> {
+        self.cases.iter().filter(|unit| !unit.case.is_coarser_grid())
+    }
+
     /// Number of realizations of the cases, as in "6 realizations" or "6 to 14 realizations".
     #[must_use]
     pub fn realizations_in_words(&self) -> String {
-        match (self.counts.iter().min(), self.counts.iter().max()) {
+        let shown = || self.cases.iter().zip(&self.counts).filter(|(unit, _)| !unit.case.is_coarser_grid());
+        let counts = || shown().map(|(_, count)| count);
+        match (counts().min(), counts().max()) {
             (Some(1), Some(1)) => "1 realization".to_owned(),
             (Some(least), Some(most)) if least < most => format!("{least} to {most} realizations"),
             (least, _) => format!("{} realizations", least.copied().unwrap_or_default()),

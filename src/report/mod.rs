@@ -7,6 +7,7 @@ mod comparison;
 mod data;
 mod experiment;
 mod failures;
+mod grids;
 mod header;
 mod layout;
 mod live;
@@ -23,6 +24,7 @@ mod works;
 pub use comparison::{Compared, comparison_page};
 pub use experiment::MeasuredLoops;
 pub use failures::Failure;
+pub use grids::Grids;
 pub use live::{LiveLoop, LiveRun, LiveStage, live_page};
 pub use methods::MethodFigures;
 pub use single_cycle::SingleCycle;
@@ -76,6 +78,8 @@ pub struct Report<'a> {
     pub scan_spectra: Option<&'a ScanSpectra>,
     /// Measured loops, if the spec has any.
     pub measured_loops: Option<&'a MeasuredLoops>,
+    /// Discretization errors of boundary elements.
+    pub grids: Option<&'a Grids>,
     /// Works of adhesion over the cut-off wavelength.
     pub works: Option<&'a Works>,
     /// Names of the sweeps, in order.
@@ -97,12 +101,6 @@ pub struct Report<'a> {
 pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
     let cases = Cases::of(report.cases, report.realizations)?;
     let numbers = Numbers::of(report.formats);
-    let study = Study {
-        case_counts: report.case_counts,
-        realizations_text: report.realizations_text,
-        seed: report.seed,
-        is_measured: !report.scans.is_empty(),
-    };
     // Without a finished cycle there is nothing to show but the plan.
     let has_results = report.cases.i64("done_count")?.iter().any(|count| *count > 0);
     let body = html! {
@@ -121,21 +119,15 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         (scans::scans(report.scans))
         @if let Some(spectra) = report.scan_spectra { (spectra::section(spectra, &numbers)?) }
         @if has_results {
+            @if let Some(of) = report.grids {
+                @if let Some(section) = grids::section(of, &cases, &numbers)? { (section) }
+            }
             (theories::theories(&cases)?)
             @if let Some(of) = report.works { (works::section(of, &cases, &numbers)?) }
             (validity::budget(&cases)?)
             (validity::validity(&cases)?)
         }
-        (heading("Parameters"))
-        p { (introduction(report)) } "\n"
-        (header::facts(report.cases, report.seed, report.realizations_text)?)
-        @if has_results {
-            (data::methods(report.cases, &study)?)
-            (data::usage())
-        }
-        (data::citation(report.case_counts))
-        (heading("Spec with all defaults"))
-        details { summary { "TOML" } pre { (report.spec) } } "\n"
+        (provenance(report, has_results)?)
     };
     let body = body.into_string();
     let page = html! {
@@ -155,6 +147,28 @@ pub fn page(report: &Report<'_>) -> Result<String, StatsError> {
         (PreEscaped(&body))
     };
     Ok(document(&format!("{}: adhesive hysteresis", report.name), Some(report.key), &page))
+}
+
+/// Parameters, texts for a publication, data access and the spec.
+fn provenance(report: &Report<'_>, has_results: bool) -> Result<Markup, StatsError> {
+    let study = Study {
+        case_counts: report.case_counts,
+        realizations_text: report.realizations_text,
+        seed: report.seed,
+        is_measured: !report.scans.is_empty(),
+    };
+    Ok(html! {
+        (heading("Parameters"))
+        p { (introduction(report)) } "\n"
+        (header::facts(report.cases, report.seed, report.realizations_text)?)
+        @if has_results {
+            (data::methods(report.cases, &study)?)
+            (data::usage())
+        }
+        (data::citation(report.case_counts))
+        (heading("Spec with all defaults"))
+        details { summary { "TOML" } pre { (report.spec) } } "\n"
+    })
 }
 
 const EXPLORER_NOTE: &str = "One cycle of each case. The slider moves along the loop.";

@@ -1,6 +1,7 @@
 //! The table of cases: means over realizations.
 
 use super::event_kinds::event_kinds;
+use super::grid_errors::GRID_ERRORS;
 use super::parameters::PARAMETER_COLUMNS;
 use super::realizations::{CASE, MAX_LOAD};
 use super::{Column, Table, count, join, real, text};
@@ -414,6 +415,7 @@ static CASE_COLUMNS: [Column;
         + PART_SPREAD_COLUMNS.len()
         + VALIDITY_COLUMNS.len()
         + MEAN_COUNTS.len()
+        + GRID_ERRORS.len()
         + COUNTS.len()] = join(&[
     CASE,
     &PARAMETER_COLUMNS,
@@ -422,6 +424,7 @@ static CASE_COLUMNS: [Column;
     &PART_SPREAD_COLUMNS,
     &VALIDITY_COLUMNS,
     MEAN_COUNTS,
+    GRID_ERRORS,
     COUNTS,
 ]);
 

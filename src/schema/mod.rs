@@ -11,6 +11,7 @@ mod cutoff;
 mod cycles;
 mod estimates;
 mod event_kinds;
+mod grid_errors;
 mod measured;
 mod methods;
 mod parameter;
@@ -33,6 +34,7 @@ pub use estimates::{
     OF_LOAD, OF_SURFACE, SURFACE_ESTIMATES,
 };
 pub use event_kinds::{EVENT_COLOURS, EVENT_KINDS, event_kind};
+pub use grid_errors::GRIDS;
 pub use measured::{MEASURED_LOOPS, MEASURED_STEPS};
 pub use methods::METHODS;
 pub use parameter::{CaseFacts, Parameter, ParameterValue};
@@ -141,6 +143,7 @@ pub static TABLES: &[&Table] = &[
     &AVALANCHES,
     &CYCLES,
     &METHODS,
+    &GRIDS,
     &PANELS,
     &COMPARISON,
     &MEASURED_LOOPS,

@@ -1,6 +1,7 @@
 //! The table of realizations.
 
 use super::event_kinds::event_kinds;
+use super::grid_errors::GRID_ERRORS;
 use super::parameters::PARAMETER_COLUMNS;
 use super::probe_results::OF_PROBE;
 use super::{ASPERITIES_ID, CYCLE_ID, Column, REALIZATION, SURFACE_ID, Table, count, join, real, text};
@@ -441,8 +442,8 @@ const RESULT_COLUMNS: [Column; RESULTS.len() + OF_PROBE.len() + FURTHER.len()] =
     join(&[RESULTS, OF_PROBE, FURTHER]);
 
 const REALIZATION_COLUMNS: [Column;
-    CASE.len() + PARAMETER_COLUMNS.len() + RESULT_COLUMNS.len() + PART_COLUMNS.len()] =
-    join(&[CASE, &PARAMETER_COLUMNS, &RESULT_COLUMNS, &PART_COLUMNS]);
+    CASE.len() + PARAMETER_COLUMNS.len() + RESULT_COLUMNS.len() + PART_COLUMNS.len() + GRID_ERRORS.len()] =
+    join(&[CASE, &PARAMETER_COLUMNS, &RESULT_COLUMNS, &PART_COLUMNS, GRID_ERRORS]);
 
 /// Results of single cycles.
 pub static REALIZATIONS: Table = Table {

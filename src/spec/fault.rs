@@ -294,6 +294,7 @@ impl<'t> Faults<'t> {
     pub(super) fn written(&self, span: &Range<usize>) -> String {
         let text = self.text.get(span.clone()).unwrap_or_default();
         let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let line: String = line.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
         if line.chars().count() > 40 { line.chars().take(39).chain(['…']).collect() } else { line }
     }
 

@@ -8,6 +8,7 @@ use toml::Spanned;
 
 use super::auto::Choices;
 use super::cases::Cases;
+use super::coarser::{self, Coarser, points_of};
 use super::elements::check_elements;
 use super::fault::Faults;
 use super::files::named;
@@ -30,12 +31,12 @@ const BASE: &str = "base";
 /// Multiplies the sweeps out. Nothing, with the faults added, if there are too many cases or the draft has no
 /// name.
 pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
-    let Draft { mut base, origins, sweeps, .. } = draft;
+    let Draft { mut base, origins, sweeps, coarser: coarser_grids, .. } = draft;
     let read: Vec<&SweepDraft> = sweeps.iter().flatten().collect();
     if too_many(&read, faults) {
         return None;
     }
-    let mut cases = Cases::default();
+    let (mut cases, mut coarser) = (Cases::default(), Vec::new());
     let (mut choices, mut auto_cases) = (Choices::of(draft.auto_methods), Vec::new());
     let mut sides = Sides::of(draft.scan_sides_m);
     let mut add =
@@ -45,24 +46,18 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             let is_auto = choices.choose(&mut values);
             let params = values.case();
             check(&params, &values, (origins, swept), faults);
+            coarser.extend(on_coarser(&coarser_grids, &values, (origins, swept), faults));
             let case = cases.add(&[sweep.to_owned()], params);
             auto_cases.extend(Some(case).filter(|_| is_auto));
             sides.note(case, written(find("cycle", "max_force_n"), origins));
         };
-    if sweeps.is_empty() {
-        add(base.clone(), &origins, &[], BASE, faults);
+    // A sweep with a fault is no point.
+    if sweeps.is_empty() || !read.is_empty() {
+        each_point(&read, (&base, &origins), |values, origins, swept, sweep| {
+            add(values, origins, swept, sweep, faults);
+        });
     }
-    for sweep in &read {
-        let swept: Vec<usize> = sweep.axes.iter().map(|axis| axis.key).collect();
-        for point in points(&sweep.axes) {
-            let (mut values, mut origins) = (base.clone(), origins.clone());
-            for (axis, value) in sweep.axes.iter().zip(point) {
-                (KEYS[axis.key].set)(&mut values, value.get_ref());
-                origins[axis.key] = Origin::Written(value.span());
-            }
-            add(values, &origins, &swept, &sweep.name, faults);
-        }
-    }
+    cases.add_coarser(coarser);
     complete(&mut base, &origins);
     let files = named(draft.files, &cases.list, draft.experiment.as_ref(), faults);
     let at = draft.realizations_at.as_ref();
@@ -83,6 +78,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
         experiment: draft.experiment,
         cases: cases.list,
         base,
+        coarser_points: points_of(&coarser_grids),
         sweeps,
         auto_methods,
         auto_cases,
@@ -91,6 +87,28 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
         files,
         absolute_files: BTreeSet::new(),
     })
+}
+
+/// Values, origins, swept keys and name of every point of the sweeps; without sweeps those of the base.
+fn each_point(
+    sweeps: &[&SweepDraft],
+    (base, of_base): (&Values, &[Origin]),
+    mut add: impl FnMut(Values, &[Origin], &[usize], &str),
+) {
+    if sweeps.is_empty() {
+        add(base.clone(), of_base, &[], BASE);
+    }
+    for sweep in sweeps {
+        let swept: Vec<usize> = sweep.axes.iter().map(|axis| axis.key).collect();
+        for point in points(&sweep.axes) {
+            let (mut values, mut origins) = (base.clone(), of_base.to_vec());
+            for (axis, value) in sweep.axes.iter().zip(point) {
+                (KEYS[axis.key].set)(&mut values, value.get_ref());
+                origins[axis.key] = Origin::Written(value.span());
+            }
+            add(values, &origins, &swept, &sweep.name);
+        }
+    }
 }
 
 /// True if the sweeps make more cases than allowed, found without making them.
@@ -171,6 +189,30 @@ fn complete(values: &mut Values, origins: &[Origin]) {
     if is_on_half_space && find("machine", "compliance").is_some_and(unwritten) {
         values.machine.far_field = FarField::HalfSpace;
     }
+}
+
+/// The cases of a case on coarser grids; none where a sweep sets the grid, and for asperities.
+fn on_coarser(
+    grids: &[Coarser],
+    values: &Values,
+    (origins, swept): (&[Origin], &[usize]),
+    faults: &mut Faults<'_>,
+) -> Vec<CaseParams> {
+    let Some(key) = coarser::key().filter(|key| !swept.contains(key)) else { return Vec::new() };
+    let mut found = Vec::new();
+    // A case with a fault has no others.
+    let grids = if faults.count() == 0 { grids } else { &[] };
+    for (points, span) in grids {
+        let (mut values, mut origins) = (values.clone(), origins.to_vec());
+        (KEYS[key].set)(&mut values, &Value::Count(*points));
+        origins[key] = Origin::Written(span.clone());
+        let params = values.case();
+        if let Some(options) = params.elements() {
+            check_elements(&params, options, &values, &origins, faults);
+            found.push(params);
+        }
+    }
+    found
 }
 
 /// Checks what depends on two values of a case.

@@ -11,7 +11,7 @@ use super::keys::{KEYS, Key, Kind, Limits, TABLES, words};
 use super::realizations::{DEFAULT, DEFAULT_BOUNDS, LEAST, PRECISION};
 use super::reference::described;
 use super::top::DEFAULT_SEED;
-use super::{MAX_REALIZATIONS, Values};
+use super::{MAX_ELEMENTS, MAX_REALIZATIONS, Values, coarser};
 use crate::lengths::LENGTH_PATTERN;
 use crate::model::{Choice, Goal};
 
@@ -56,7 +56,7 @@ impl From<Value> for Sorted {
 pub fn json_schema() -> String {
     let definitions: BTreeMap<&str, Value> = KEYS.iter().map(|key| (key.path, definition(key))).collect();
     let mut properties: BTreeMap<&str, Value> =
-        TABLES.into_iter().map(|table| (table, section(table, key))).collect();
+        TABLES.into_iter().map(|table| (table, section(table, outside))).collect();
     let mut in_sweep: BTreeMap<&str, Value> =
         TABLES.into_iter().map(|table| (table, section(table, axis))).collect();
     let name = |meaning: &str| json!({ "type": "string", "pattern": NAME, "description": meaning });
@@ -121,6 +121,18 @@ fn section(table: &str, of: fn(&Key) -> Value) -> Value {
 /// The value of a key.
 fn key(key: &Key) -> Value {
     json!({ "$ref": format!("#/$defs/{}", key.path) })
+}
+
+/// The value of a key outside of sweeps, which may be a list of grids.
+fn outside(of: &Key) -> Value {
+    if of.path != coarser::KEY {
+        return key(of);
+    }
+    let grid = json!({ "type": "integer", "minimum": 1, "maximum": MAX_ELEMENTS });
+    let list = json!({
+        "type": "array", "items": grid, "minItems": 1, "maxItems": coarser::MOST, "uniqueItems": true,
+    });
+    json!({ "anyOf": [key(of), list] })
 }
 
 /// The value or the values of a key in a sweep.

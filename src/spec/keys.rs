@@ -321,7 +321,9 @@ pub(super) static KEYS: &[Key] = &[
     key!(model.allow_low_tabor in asperities.allow_low_tabor, "", "With `jump_in = \"wu\"`, a Tabor \
          parameter below 2 is an error. If true, it is a warning."; flag),
     key!(boundary_elements.points in elements.points, "", "Grid points along a side. 0: the smallest power \
-         of two with 16 points per shortest wavelength, at most 4096."; optional count to 4096,
+         of two with 16 points per shortest wavelength, at most 4096. Outside of sweeps a list such as \
+         [64, 128, 256] takes the finest grid, and repeats each loop on the coarser ones for the \
+         discretization error."; optional count to 4096,
         "grid points along a side; 0 for 16 points per shortest wavelength; at most 4096"),
     key!(boundary_elements.attraction in attraction, "", "Attraction between the surfaces.";
         word AttractionKind),

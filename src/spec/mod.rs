@@ -6,6 +6,7 @@
 
 mod auto;
 mod cases;
+mod coarser;
 mod elements;
 mod entries;
 mod experiment;
@@ -45,6 +46,7 @@ use crate::model::{Experiment, LoopOptions, Method};
 pub use crate::physics::elements::PER_WAVELENGTH;
 pub use crate::text::quoted;
 pub use auto::Chooser;
+pub use coarser::COARSER;
 pub use elements::{
     FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, automatic_range, mesh_number,
 };
@@ -168,6 +170,10 @@ pub struct Spec {
     pub cases: Vec<Case>,
     /// Parameters that the sweeps override; a case of its own only without a sweep.
     pub base: Values,
+    /// Coarser grids of boundary elements of the base, ascending: the loops of every case whose sweep does
+    /// not set the grid are repeated on them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub coarser_points: Vec<u32>,
     /// The sweeps as written, each value checked.
     pub sweeps: Vec<Sweep>,
     /// Methods chosen for the points with `method = "auto"`, in their order, if they differ; `auto` where a
@@ -194,7 +200,7 @@ pub struct Spec {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Case {
     /// Names of all sweeps in which this case occurs, in their order; `base` alone when the spec has no
-    /// sweep.
+    /// sweep, and [`COARSER`] alone for a case that is only a coarser grid of others.
     pub sweeps: Vec<String>,
     /// Parameters of the case.
     pub params: CaseParams,

@@ -6,6 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::coarser::{self, Coarser};
 use super::entries::{Entry, entries, keys, lost, shown};
 use super::experiment::experiment;
 use super::fault::Faults;
@@ -26,6 +27,8 @@ pub(super) struct Draft {
     pub(super) figures: Figures,
     pub(super) experiment: Option<Experiment>,
     pub(super) base: Values,
+    /// Coarser grids of boundary elements of the base.
+    pub(super) coarser: Vec<Coarser>,
     /// Origin of the base's value of each key, in the order of [`KEYS`].
     pub(super) origins: Vec<Origin>,
     /// The sweeps; nothing for one that has a fault, of which the cases are unknown.
@@ -107,6 +110,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         realizations_at: None,
         experiment: None,
         base: Values::default(),
+        coarser: Vec::new(),
         origins: vec![Origin::Default; KEYS.len()],
         sweeps: Vec::new(),
         files: BTreeMap::new(),
@@ -171,7 +175,13 @@ fn base(
 ) {
     for (place, _, written) in keys(table, written, span, faults) {
         let key = &KEYS[place];
-        let read = if !key.kind.is_list() && written.get_ref().is_array() {
+        let read = if key.path == coarser::KEY && written.get_ref().is_array() {
+            let grids = coarser::grids(written, faults);
+            grids.map(|(finest, coarser)| {
+                draft.coarser = coarser;
+                finest
+            })
+        } else if !key.kind.is_list() && written.get_ref().is_array() {
             let message = format!("`{}` must be a single value here, not an array", key.path);
             let help = match key.path {
                 "surface.file" => "write surface.files for several scans of one sample, or use a [[sweep]]",

@@ -6,7 +6,7 @@ use super::keys::{
     GENERATED, KEYS, Key, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, TABLES, WHERE_USED,
 };
 use super::values::Values;
-use super::{Case, Spec, Value};
+use super::{Case, Spec, Value, coarser};
 use crate::model::{Choice as _, Method};
 use crate::text::quoted;
 
@@ -39,7 +39,14 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
             writeln!(text, "\n[{table}]")?;
         }
         for key in keys {
-            writeln!(text, "{} = {}", key.name, value(&(key.get)(&spec.base)))?;
+            let of_base = value(&(key.get)(&spec.base));
+            let of_base = if key.path == coarser::KEY && !spec.coarser_points.is_empty() {
+                let coarser = spec.coarser_points.iter().map(u32::to_string);
+                format!("[{}]", list(coarser.chain([of_base])))
+            } else {
+                of_base
+            };
+            writeln!(text, "{} = {of_base}", key.name)?;
         }
     }
     for sweep in &spec.sweeps {
@@ -97,7 +104,11 @@ fn follows(key: &Key, spec: &Spec) -> bool {
     };
     let differs = |case: &Case| (key.get)(&Values::from(&case.params)) != (key.get)(&spec.base);
     ["surface.detrend", "machine.compliance"].contains(&key.path)
-        && spec.cases.iter().any(|case| differs(case) && !case.sweeps.iter().all(|name| set(name)))
+        && spec
+            .cases
+            .iter()
+            .filter(|case| !case.is_coarser_grid())
+            .any(|case| differs(case) && !case.sweeps.iter().all(|name| set(name)))
 }
 
 /// A value as TOML. Rust's shortest form of a float is also TOML's, and reads back to the same bits.

@@ -5,6 +5,7 @@ use super::cycle_input::{cycle_input, of_failed};
 use super::done::{Clock, Outcome};
 use super::error::incomplete;
 use super::extent::{Extent, common, own_file};
+use super::grids::grid_rule;
 use super::measured_loop::{self, MeasuredLoop, measure_loop};
 use super::runner::{Context, Single, run_single};
 use super::surface::scale;
@@ -12,11 +13,11 @@ use super::{StageError, Tally, cutoff, datapackage, scan_spectra};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Choice;
 use crate::spec::CaseParams;
-use crate::stats::{self, CaseInput, CycleInput, Given, Planned};
+use crate::stats::{self, CaseInput, CycleInput, Given, Planned, WithGridErrors};
 use crate::store::commit::Written;
 use crate::store::{Check, Frame, commit, parquet};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Aggregates the finished cycles; without `--partial`, all must be finished.
@@ -67,13 +68,16 @@ fn unfinished(campaign: &Campaign, standings: &[Standing]) -> Option<StageError>
 
 /// Writes the tables over realizations and their description.
 fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<Written>, StageError> {
-    let (cases, cycles) = inputs(campaign, standings)?;
-    let realizations = stats::realizations(&cases, &cycles)?;
-    let averaged = stats::cases(&realizations, &cases)?;
+    let (all_cases, all_cycles) = inputs(campaign, standings)?;
+    let all_loops = stats::realizations(&all_cases, &all_cycles)?;
+    let means = stats::cases(&all_loops, &all_cases)?;
+    let WithGridErrors { realizations, cases: averaged, grids } =
+        stats::with_grid_errors(&all_loops, &means, &all_cases, grid_rule)?;
+    let planned = stats::planned(&all_cases, &planned_cycles(campaign, standings))?;
+    let (cases, cycles) = without_coarser(all_cases, all_cycles);
     let methods = stats::methods(&cases, &side_by_side(campaign), &realizations)?;
     let curves = stats::curves(&cases, &cycles)?;
     let avalanches = stats::avalanches(&cases, &cycles)?;
-    let planned = stats::planned(&cases, &planned_cycles(campaign, standings))?;
     let write = |frame: &Frame| {
         Ok(parquet::write_table(
             &campaign.statistics_path(frame.table().name),
@@ -82,7 +86,7 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
         )?)
     };
     let over_cut_offs = cutoff::table(campaign, standings)?;
-    let tables = [realizations, curves, avalanches, planned, methods, averaged, over_cut_offs];
+    let tables = [realizations, curves, avalanches, planned, methods, averaged, grids, over_cut_offs];
     let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
     if let Some(loops) = measured_loops(campaign)? {
         files.push(write(&measured_loop::rows(&loops)?)?);
@@ -104,6 +108,15 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
         files.push(commit::commit_bytes("describe the tables in", &path, text.as_bytes())?);
     }
     Ok(files)
+}
+
+/// The inputs without cases that are only coarser grids of others.
+fn without_coarser(cases: Vec<CaseInput>, cycles: Vec<CycleInput>) -> (Vec<CaseInput>, Vec<CycleInput>) {
+    let (hidden, cases): (Vec<CaseInput>, Vec<CaseInput>) =
+        cases.into_iter().partition(|case| case.is_coarser_grid);
+    let hidden: HashSet<String> = hidden.into_iter().map(|case| case.case_id).collect();
+    let cycles = cycles.into_iter().filter(|cycle| !hidden.contains(&cycle.case_id)).collect();
+    (cases, cycles)
 }
 
 /// The measured loops of the spec, whose files must be as they were when the spec was read.
@@ -166,11 +179,13 @@ fn side_by_side(campaign: &Campaign) -> Vec<[String; 2]> {
     let same = |a: &CaseParams, b: &CaseParams| a.surface == b.surface && a.material == b.material;
     let pairs = |one: &CaseUnit| {
         let is_later = |other: &&CaseUnit| other.case.params.method.kind() > one.case.params.method.kind();
-        let others =
-            campaign.cases.iter().filter(is_later).filter(|other| same(&one.case.params, &other.case.params));
+        let others = campaign
+            .shown_cases()
+            .filter(is_later)
+            .filter(|other| same(&one.case.params, &other.case.params));
         others.map(|other| [one.id.clone(), other.id.clone()]).collect::<Vec<_>>()
     };
-    campaign.cases.iter().flat_map(pairs).collect()
+    campaign.shown_cases().flat_map(pairs).collect()
 }
 
 /// Every cycle of every case with its status.
@@ -228,6 +243,8 @@ fn case_input(
     Ok(CaseInput {
         case_id: unit.id.clone(),
         sweep: unit.case.sweeps.join("+"),
+        family: params.on_any_grid().map(|params| format!("{params:?}")),
+        is_coarser_grid: unit.case.is_coarser_grid(),
         parameters,
         max_loads: params.cycle.max_load.clone(),
         load_unit: campaign.spec.load_unit(),

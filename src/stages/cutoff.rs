@@ -49,7 +49,8 @@ impl Row {
 /// The table, for all cases with a known surface.
 pub(super) fn table(campaign: &Campaign, standings: &[Standing]) -> Result<Frame, StageError> {
     let mut rows = Vec::new();
-    for case in 0..campaign.cases.len() {
+    let is_shown = |case: &usize| !campaign.cases[*case].case.is_coarser_grid();
+    for case in (0..campaign.cases.len()).filter(is_shown) {
         rows.extend(of_case(campaign, standings, case)?);
     }
     let each = |value: &dyn Fn(&Row) -> Option<f64>| -> Vec<Option<f64>> {

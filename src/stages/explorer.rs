@@ -2,7 +2,7 @@
 
 use super::StageError;
 use super::explorer_maps::{LETTERS, ground, rounded, stored_maps};
-use crate::campaign::{Campaign, CycleUnit, Standing};
+use crate::campaign::{Campaign, CaseUnit, CycleUnit, Standing};
 use crate::constants::Constant;
 use crate::model::Boundary;
 use crate::physics::RegionChange;
@@ -127,7 +127,8 @@ fn pick<'a>(campaign: &'a Campaign, standings: &[Standing], pairs: &Pairs<'_>) -
         .map(|(unit, _)| unit)
         .collect();
     let mut picked: Vec<&CycleUnit> = Vec::new();
-    for (place, case) in campaign.cases.iter().enumerate() {
+    let shown = |(_, case): &(usize, &CaseUnit)| !case.case.is_coarser_grid();
+    for (place, case) in campaign.cases.iter().enumerate().filter(shown) {
         let of_case = || done.iter().filter(|unit| unit.case == place && finished(unit));
         let paired = pairs
             .surface(&case.id)

@@ -22,6 +22,7 @@ mod extract;
 mod failure;
 mod foreseen;
 mod generate;
+mod grids;
 mod identity;
 mod live;
 mod live_state;

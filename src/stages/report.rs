@@ -5,6 +5,7 @@ use super::done::{Clock, Outcome};
 use super::error::incomplete;
 use super::experiment::beside;
 use super::explorer::explorer;
+use super::grids::grids;
 use super::runner::{Context, Single, run_single};
 use super::single_cycle::look;
 use super::works::works;
@@ -13,7 +14,9 @@ use crate::campaign::{Campaign, CaseUnit, REPORT_PAGE, STATISTICS, Stage, Standi
 use crate::figures::{
     Drawing, Panel, Spectra, Tables, Units, file, method_ratios, panels, sensitivity, spectra, table,
 };
-use crate::report::{self, Failure, MeasuredLoops, MethodFigures, Report, ScanSpectra, SingleCycle, Works};
+use crate::report::{
+    self, Failure, Grids, MeasuredLoops, MethodFigures, Report, ScanSpectra, SingleCycle, Works,
+};
 use crate::schema;
 use crate::spec::Figures;
 use crate::store::hdf5::{SurfaceHeader, read_header};
@@ -54,6 +57,7 @@ struct Drawings {
     measured_loops: Option<MeasuredLoops>,
     scan_spectra: Option<ScanSpectra>,
     works: Option<Works>,
+    grids: Option<Grids>,
 }
 
 impl Drawings {
@@ -78,6 +82,7 @@ impl Drawings {
             measured_loops: beside(campaign, standings, cases)?,
             scan_spectra: scan_spectra(campaign)?,
             works: works(campaign, cases)?,
+            grids: grids(campaign, cases)?,
         })
     }
 
@@ -90,9 +95,15 @@ impl Drawings {
             .chain(&self.sensitivity)
             .map(|drawing| (drawing.stem, drawing.svg.as_str()));
         let measured = self.measured_loops.iter().map(|of| &of.panel).chain(self.spectra());
-        let works = self.works.iter().flat_map(|of| &of.panels);
-        let panels = self.panels.iter().map(|(_, panel)| panel).chain(cycle).chain(measured).chain(works);
+        let panels =
+            self.panels.iter().map(|(_, panel)| panel).chain(cycle).chain(measured).chain(self.tables());
         panels.map(drawing).chain(others).chain(self.methods.ratios.as_ref().map(drawing))
+    }
+
+    /// Panels of works of adhesion and of grids.
+    fn tables(&self) -> impl Iterator<Item = &Panel> {
+        let grids = self.grids.iter().flat_map(|of| &of.panels);
+        self.works.iter().flat_map(|of| &of.panels).chain(grids)
     }
 
     /// Panels of the spectra of scans.
@@ -103,8 +114,7 @@ impl Drawings {
     /// All panels with the names of their sweeps; those of the single cycle have none.
     fn all_panels(&self) -> Vec<(String, Panel)> {
         let measured = self.measured_loops.iter().map(|of| &of.panel).chain(self.spectra());
-        let works = self.works.iter().flat_map(|of| &of.panels);
-        let single = self.cycles.iter().flat_map(|cycle| &cycle.panels).chain(measured).chain(works);
+        let single = self.cycles.iter().flat_map(|cycle| &cycle.panels).chain(measured).chain(self.tables());
         let cycle = single.map(|panel| (String::new(), panel.clone()));
         self.panels.iter().cloned().chain(cycle).collect()
     }
@@ -189,6 +199,7 @@ fn page(
         measured_loops: drawings.measured_loops.as_ref(),
         scan_spectra: drawings.scan_spectra.as_ref(),
         works: drawings.works.as_ref(),
+        grids: drawings.grids.as_ref(),
         sweeps: &sweeps(campaign),
         drawings: &drawings.panels,
         cycles: &drawings.cycles,
@@ -259,7 +270,7 @@ pub(super) fn pictures(stem: &str, svg: &str, files: &Figures) -> Result<Vec<(St
 
 fn sweeps(campaign: &Campaign) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for name in campaign.cases.iter().flat_map(|unit| &unit.case.sweeps) {
+    for name in campaign.shown_cases().flat_map(|unit| &unit.case.sweeps) {
         if !names.contains(name) {
             names.push(name.clone());
         }

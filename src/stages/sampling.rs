@@ -78,7 +78,8 @@ fn count(campaign: &Campaign, case: usize, standings: &[Standing], until: &Until
         })
         .collect::<Result<_, StageError>>()?;
     let known: Option<Vec<Outcome>> = outcomes.into_iter().collect();
-    if campaign.cases[case].case.params.surface.measured().is_some() {
+    let of_case = &campaign.cases[case].case;
+    if of_case.params.surface.measured().is_some() || of_case.is_coarser_grid() {
         return Ok(campaign.counts[case]);
     }
     Ok(known.map_or(campaign.counts[case], |known| enough(&known, until)))

@@ -17,6 +17,8 @@ use std::collections::HashMap;
 pub struct Verdict {
     /// Id of the case.
     pub case_id: String,
+    /// True if the case is only a coarser grid of others.
+    pub is_coarser_grid: bool,
     /// Its method.
     pub method: Method,
     /// Side of the square \[m\]; nothing for a surface that is not known yet.
@@ -111,6 +113,7 @@ fn verdict(unit: &CaseUnit, known: Option<&Known>) -> Verdict {
     let [whole, octave] = [ratio(Flattening::persson_tosatti), ratio(Flattening::conformity)];
     Verdict {
         case_id: unit.id.clone(),
+        is_coarser_grid: unit.case.is_coarser_grid(),
         method: params.method.kind(),
         length_m: known.map(|known| known.header.length_m).or_else(of_generated),
         regime: energies

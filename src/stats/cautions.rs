@@ -96,7 +96,7 @@ pub const CAUTIONS: [Caution; 28] = [
         "boundary elements have {} grid points per shortest wavelength (12 per JKR radius of a probe count \
          as 16)",
         "Dissipated energy and pull-off force depend on the grid.",
-        "Increase `boundary_elements.points`.",
+        "Increase `boundary_elements.points`; a list of grids estimates the error.",
     ),
     warning(
         "full_contact",

@@ -14,6 +14,8 @@ mod cycle;
 mod digits;
 mod events;
 mod findings;
+mod grid_error;
+mod grid_verdict;
 mod grouped;
 mod listed;
 mod loads;
@@ -39,6 +41,8 @@ pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, m
 pub use curves::curves;
 pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};
 pub use findings::{FINDINGS, Judged, Reading, Verdict, findings};
+pub use grid_error::{GridEstimate, GridRule, WithGridErrors, with_grid_errors};
+pub use grid_verdict::{grid_help, grid_verdict};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
 pub use loads::{load_in_words, loads};
 pub use methods::{MethodPair, method_pairs, methods, methods_summary, names_of_pairs};
@@ -63,6 +67,10 @@ pub struct CaseInput {
     pub case_id: String,
     /// The sweeps that it belongs to, joined by `+`.
     pub sweep: String,
+    /// Name that cases share which differ only in the grid of boundary elements; nothing for asperities.
+    pub family: Option<String>,
+    /// True for a case that is only a coarser grid of others: its loops serve their discretization errors.
+    pub is_coarser_grid: bool,
     /// Parameters of the case: the columns that the tables `realizations` and `cases` have in common.
     pub parameters: Given,
     /// Its load reversals, as `F/(E* A0)`.

@@ -3,6 +3,7 @@
 use super::StatsError;
 use super::cases::fewer_surfaces;
 use super::digits::{column_exponent, decimals, power_of_ten, significant};
+use super::grid_verdict::{self, grid_help};
 use super::listed::{Listed, listing, listing_of, sweeps};
 use super::loads::{FORCE, OVER_MODULUS, loads};
 use super::model_error::{COLUMNS, outdated};
@@ -32,6 +33,10 @@ const OF_FLAT: &str = ".";
 const OF_TIP: &str = ", of a probe with R_tip = R.";
 
 const REFERENCE: &str = "*: reference case. change: relative to it, where all realizations finished.";
+
+const ERRORS: &str = "\
+Θ by boundary elements: ± estimated error of the grid, and ± half-width of the
+95 % confidence interval of the mean over surfaces.";
 
 /// Four results of a row: heading, column of the table `cases` without its ending, and factor to the unit of
 /// the heading.
@@ -130,13 +135,17 @@ pub enum Shown {
 /// If a table lacks one of its columns.
 pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<String, StatsError> {
     let mut lines = Vec::new();
-    let mut compared = false;
+    let (mut compared, mut has_errors) = (false, false);
+    let loads = loads(cases)?.all_labels();
     for name in sweeps(cases)? {
         lines.push(String::new());
         let title = if name.is_empty() { "case".to_owned() } else { name.clone() };
         let rows = listing_of(cases, &name)?;
         compared |= rows.iter().any(|listed| listed.is_reference);
         lines.extend(table(cases, &rows.iter().collect::<Vec<_>>(), &title, &RESULTS)?);
+        let with_errors = grid_verdict::lines(cases, &rows, &loads)?;
+        has_errors |= !with_errors.is_empty();
+        lines.extend(with_errors.iter().flat_map(|sentence| wrapped(sentence)));
         let rows: Vec<usize> = rows.iter().map(|listed| listed.row).collect();
         lines.extend(
             verdicts(cases, methods, &rows)?
@@ -144,9 +153,12 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
                 .flat_map(|sentence| wrapped(&format!("Verdict: {sentence}"))),
         );
     }
+    let all: Vec<usize> = (0..cases.row_count()).collect();
+    lines.extend(grid_help(cases, &all)?.map(|help| format!("help: {help}")));
     lines.extend(in_si(cases)?);
     let mut head = vec![MEANS.to_owned(), loads_head(cases)?.to_owned(), results_head(cases)?];
     head.extend(compared.then(|| REFERENCE.to_owned()));
+    head.extend(has_errors.then(|| ERRORS.to_owned()));
     lines.extend(match shown {
         Shown::Few => few_warnings(cases)?,
         Shown::All => warning_lines(cases)?,

@@ -46,7 +46,8 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
     if let Some(limit) = LIMITS.iter().find(|limit| limit.caution == kind.code) {
         let numbers = cases.f64_or_null(limit.column)?;
         let values: Vec<f64> = rows.iter().filter_map(|row| numbers[*row]).collect();
-        return Ok(measured_text(kind, *limit, &values));
+        let text = measured_text(kind, *limit, &values);
+        return Ok(if kind.code == "coarse" { text + &grid_errors(cases, rows)? } else { text });
     }
     let (done, planned, failed) =
         (cases.i64("done_count")?, cases.i64("planned_count")?, cases.i64("failed_count")?);
@@ -87,6 +88,22 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
         (_, false) => format!(" ({low} to {high} per case)"),
     };
     Ok(kind.text.replace("{}", &format!("{} of {}", total(&done), total(&planned))) + &each)
+}
+
+/// Estimated grid errors of Θ and F_po of rows, as the end of a sentence; empty without any.
+fn grid_errors(cases: &Frame, rows: &[usize]) -> Result<String, StatsError> {
+    let mut parts = Vec::new();
+    for (symbol, column) in [("Θ", "loss_grid_error"), ("F_po", "pull_off_grid_error")] {
+        let errors = cases.f64_or_null(column)?;
+        let known = || rows.iter().filter_map(|row| errors[*row]).map(|error| 100.0 * error);
+        let [low, high] = [f64::min, f64::max]
+            .map(|pick: fn(f64, f64) -> f64| known().reduce(pick).map(|error| significant(error, 2)));
+        if let Some((low, high)) = low.zip(high) {
+            let range = if low == high { low } else { format!("{low} to {high}") };
+            parts.push(format!("{range}\u{a0}% of {symbol}"));
+        }
+    }
+    Ok(if parts.is_empty() { String::new() } else { format!("; grid error {}", parts.join(", ")) })
 }
 
 /// Measured values of a warning with their limit: `A/A₀ = 31 to 35 % (limit 30 %)`.

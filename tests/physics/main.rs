@@ -17,6 +17,7 @@ mod examples;
 mod extremes;
 mod fast;
 mod golden;
+mod grid_convergence;
 mod homogeneity;
 mod invariance;
 mod isolated;

@@ -19,6 +19,8 @@ mod extremes;
 #[cfg(feature = "stats")]
 mod figures;
 #[cfg(feature = "stats")]
+mod grids;
+#[cfg(feature = "stats")]
 mod guide;
 #[cfg(feature = "stats")]
 mod keys;

@@ -125,6 +125,8 @@ pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[
     CaseInput {
         case_id: id.to_owned(),
         sweep: sweep.to_owned(),
+        family: None,
+        is_coarser_grid: false,
         parameters: given(&[
             ("hurst", hurst.into()),
             ("magnification", magnification.into()),

@@ -11,14 +11,14 @@ use crate::cli::FolderArguments;
 use crate::model::{GeneratedSurface, SurfaceSource};
 use crate::schema::{self, Table};
 use crate::spec::{CaseParams, GENERATED, MEASURED, NAMES, REPLACED, WHERE_USED};
-use crate::stats::{significant, warnings_of};
+use crate::stats::{grid_help, grid_verdict, significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
 use crate::text::{shell_path, shown, visible, wrapped};
 use indicatif::HumanBytes;
 use serde_json::{Map, Value, json};
 
 /// Results in the printed text; JSON has all columns.
-const RESULTS: [&str; 24] = [
+const RESULTS: [&str; 27] = [
     "max_load_n",
     "max_load_pa",
     "pull_off_load",
@@ -43,6 +43,9 @@ const RESULTS: [&str; 24] = [
     "area_jkr_jump_in",
     "loss_ratio_dk",
     "audit_gap",
+    "area_grid_error",
+    "pull_off_grid_error",
+    "loss_grid_error",
 ];
 
 /// A case or task.
@@ -53,6 +56,8 @@ struct Shown {
     parameters: Map<String, Value>,
     /// Rows of a table of statistics.
     results: Vec<Map<String, Value>>,
+    /// Dissipated energy with its errors, of each of these rows that has them.
+    verdicts: Vec<String>,
     warnings: Vec<String>,
     tasks: Vec<(String, String)>,
     files: Vec<Kept>,
@@ -116,6 +121,11 @@ fn of_case(campaign: &Campaign, place: usize, case: &CaseUnit) -> Result<Shown, 
     if let Some(frame) = table(campaign, &schema::CASES)? {
         let rows = rows(&frame, "case_id", &case.id)?;
         found.results = rows.iter().map(|row| values(&frame, *row)).collect();
+        for row in &rows {
+            found.verdicts.extend(grid_verdict(&frame, *row).map_err(failed)?);
+        }
+        let help = grid_help(&frame, &rows).map_err(failed)?;
+        found.verdicts.extend(help.map(|help| format!("help: {help}")));
         let warnings = warnings_of(&frame, &rows).map_err(failed)?;
         found.warnings = warnings
             .iter()
@@ -242,10 +252,10 @@ fn values(frame: &Frame, row: usize) -> Map<String, Value> {
 
 fn answer(id: &str, found: &Shown) -> Value {
     let tasks: Vec<_> = found.tasks.iter().map(|(id, state)| json!({ "id": id, "state": state })).collect();
-    let Shown { kind, state, parameters, results, warnings, files, .. } = found;
+    let Shown { kind, state, parameters, results, verdicts, warnings, files, .. } = found;
     json!({
         "id": id, "kind": kind, "state": state, "parameters": parameters, "results": results,
-        "warnings": warnings, "tasks": tasks, "files": files,
+        "verdicts": verdicts, "warnings": warnings, "tasks": tasks, "files": files,
     })
 }
 
@@ -265,6 +275,7 @@ fn described(id: &str, found: &Shown) -> String {
             RESULTS.iter().filter_map(|name| result(row, name)).collect(),
         );
     }
+    section("Verdict", found.verdicts.clone());
     section("Warnings", found.warnings.clone());
     section("Tasks", found.tasks.iter().map(|(id, state)| format!("{id}: {}", visible(state))).collect());
     section(

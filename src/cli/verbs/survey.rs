@@ -296,8 +296,9 @@ fn describe(
 ) -> String {
     let (name, dir) = (&campaign.spec.name, shown(&campaign.dir));
     let mut text = format!(
-        "{name} in {dir}: {}, {}\n",
-        counted(campaign.cases.len(), "case"),
+        "{name} in {dir}: {}{}, {}\n",
+        counted(campaign.shown_cases().count(), "case"),
+        coarser_grids(campaign),
         campaign.realizations_in_words()
     );
     for (stage, units) in units {
@@ -324,6 +325,14 @@ fn describe(
         text += &further(*stage, units);
     }
     text
+}
+
+/// Number of coarser grids of the cases, as in " with 4 coarser grids"; empty without any.
+fn coarser_grids(campaign: &Campaign) -> String {
+    match campaign.cases.len() - campaign.shown_cases().count() {
+        0 => String::new(),
+        count => format!(" with {}", counted(count, "coarser grid")),
+    }
 }
 
 /// Loads of finished cycles that have no result, one line for each cycle.

@@ -49,12 +49,13 @@ pub(super) fn range(values: impl Iterator<Item = f64> + Clone, digits: usize) ->
 /// One paragraph for each regime and method.
 fn regimes(verdicts: &[Verdict]) -> String {
     let mut groups: BTreeMap<_, Vec<&Verdict>> = BTreeMap::new();
-    for of in verdicts.iter().filter(|of| of.regime.is_some() || of.error.is_none()) {
+    let shown: Vec<&Verdict> = verdicts.iter().filter(|of| !of.is_coarser_grid).collect();
+    for of in shown.iter().filter(|of| of.regime.is_some() || of.error.is_none()) {
         groups.entry((of.regime, of.is_table_missing, of.method)).or_default().push(of);
     }
     groups
         .values()
-        .map(|group| wrapped(&format!("{:10}{}", "regime", regime(group, verdicts.len())), INDENT))
+        .map(|group| wrapped(&format!("{:10}{}", "regime", regime(group, shown.len())), INDENT))
         .collect()
 }
 
@@ -154,6 +155,7 @@ fn errors(verdicts: &[Verdict]) -> String {
 pub(super) fn json(of: &Verdict) -> Value {
     json!({
         "id": of.case_id,
+        "coarser_grid": of.is_coarser_grid,
         "method": of.method.word(),
         "regime": of.regime.map(Regime::name),
         "recommended_method": of.regime.map(|regime| regime.method().word()),

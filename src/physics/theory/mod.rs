@@ -11,6 +11,7 @@ pub mod approximate_jkr;
 pub mod cut_off;
 pub mod estimates;
 pub mod flattening;
+pub mod grid_convergence;
 pub mod probe;
 pub mod probe_loss;
 pub mod regime;
@@ -21,6 +22,7 @@ use crate::constants::Constant;
 use crate::jkr::loop_loss_constant;
 use crate::model::{Material, Slips};
 use crate::surface::spectrum::Moments;
+use grid_convergence::CONSTANTS as GRIDS;
 use std::f64::consts::PI;
 
 /// Constants of the analytical models.
@@ -33,6 +35,10 @@ pub(super) const CONSTANTS: &[Constant] = &[
         "Prefactors of the works of adhesion of pinning in the table `cutoff`.",
         "",
     ),
+    GRIDS[0],
+    GRIDS[1],
+    GRIDS[2],
+    GRIDS[3],
 ];
 
 /// Nayak's density of the reduced summit curvature in the limit used by Deng and Kesari. Eq A2.

@@ -36,7 +36,7 @@ fn reference(alpha: f64) -> (f64, f64, f64) {
 }
 
 /// Dissipated energy, minimum load, gap at jump-off and energy balance over their exact values.
-fn computed(alpha: f64, n: usize, attraction: Attraction, range: Option<f64>) -> [f64; 4] {
+pub(super) fn computed(alpha: f64, n: usize, attraction: Attraction, range: Option<f64>) -> [f64; 4] {
     let h = SLOPE * n as f64;
     let work = (alpha * PI / 2.0_f64.sqrt() * SLOPE).powi(2) * n as f64;
     let law = range.map_or_else(|| Law::crack(work), |range| Law::morse(work, range * work.sqrt()));

@@ -2,6 +2,7 @@
 
 mod front;
 pub mod golden;
+mod grid_error;
 mod johnson;
 mod operator;
 mod peer;

@@ -207,6 +207,15 @@ fn val_load_control() {
     assert!((last.mean_penetration_m / unit + 0.773).abs() < 0.1, "{}", last.mean_penetration_m / unit);
 }
 
+/// F_po and Θ over their exact values of a probe with waves, with so many points per a0.
+pub(super) fn wavy(alpha: f64, per: f64) -> (f64, f64) {
+    let [amplitude, wavelength] = waves(alpha);
+    let max_load = 0.6 * load();
+    let found = results(&run(6.5, per, [amplitude, wavelength], max_load, HALF_SPACE));
+    let exact = loop_of(&exact(amplitude, wavelength, 4.0 * a0()), max_load, 0.0);
+    (found.pull_off_n / exact.pull_off_n, found.loss_j / exact.loss_j)
+}
+
 /// Probes with concentric waves against the exact loop at two amplitudes, with 20 grid points per wave: F_po to 1 %, Θ to 4 %, every jump. The touch is a jump
 /// of the simulated loop in addition.
 #[test]

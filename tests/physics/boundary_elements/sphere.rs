@@ -41,7 +41,7 @@ fn val_reference_of_the_sphere() {
 }
 
 /// Pull-off force and dissipated energy over those of JKR, for a sphere with the JKR radius `a0` at δ = 0 (in spacings).
-fn sphere(n: usize, a0: f64) -> (f64, f64) {
+pub(super) fn sphere(n: usize, a0: f64) -> (f64, f64) {
     // a0³ = 2πΔγR²/E*.
     let radius = 12.0 * a0;
     let work = a0.powi(3) / (2.0 * PI * radius * radius);

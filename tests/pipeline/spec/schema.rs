@@ -7,12 +7,14 @@ use serde_json::Value;
 use super::{accepted, specs};
 
 /// Bad specs whose fault no JSON Schema shows: it joins several values, or is the point of an integer written as a float.
-const BEYOND: [&str; 17] = [
+const BEYOND: [&str; 19] = [
     "elements_negligible_adhesion",
     "files_realizations",
     "files_with_file",
     "grid_odd",
     "grid_too_large",
+    "grids_too_coarse",
+    "grids_unsorted",
     "integer_is_float",
     "measured_surface",
     "million_cases",

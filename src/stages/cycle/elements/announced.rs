@@ -47,7 +47,8 @@ pub(in crate::stages) fn announced(
 
 /// Cases with fewer grid points per shortest wavelength than recommended.
 fn coarse(all: &[Costly<'_>]) -> Option<Outside> {
-    Outside::of("coarse", all.iter().map(|of| (of.unit.id.clone(), of.cost.per_wavelength)))
+    let shown = all.iter().filter(|of| !of.unit.case.is_coarser_grid());
+    Outside::of("coarse", shown.map(|of| (of.unit.id.clone(), of.cost.per_wavelength)))
 }
 
 /// Cases with a generated surface whose attraction acts over many steps.

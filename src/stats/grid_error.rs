@@ -1,0 +1,283 @@
+//! Discretization errors of results by boundary elements, from loops of one case on several grids.
+//!
+//! Cases that differ only in their grid are a family ([`CaseInput::family`]). A result has an error if the
+//! same surfaces were loaded and unloaded on a coarser grid of the family. The error of a mean follows from
+//! the means over the surfaces that all grids have: there, events that single surfaces skip on one grid
+//! average out.
+
+use super::rows::Rows;
+use super::{CaseInput, Given, StatsError};
+use crate::schema::GRIDS;
+use crate::store::{ColumnData, Frame};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Estimated error of the value on the finest grid of a series.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridEstimate {
+    /// Error over the magnitude of the value.
+    pub relative: f64,
+    /// Value on an infinitely fine grid, if the series has a limit.
+    pub extrapolated: Option<f64>,
+}
+
+/// Error of the last of several values on grids of ascending points; nothing where it is undefined.
+pub type GridRule = fn(&[f64], &[f64]) -> Option<GridEstimate>;
+
+/// Results with an error: column of the table `realizations`, and stem of the columns of the error.
+pub const QUANTITIES: [(&str, &str); 5] = [
+    ("area_at_max_load", "area"),
+    ("pull_off_load", "pull_off"),
+    ("loss", "loss"),
+    ("dissipated_loading", "loading"),
+    ("dissipated_unloading", "unloading"),
+];
+
+/// Grids of a series, at most: the finest ones.
+const MOST: usize = 3;
+
+/// Tables with the errors of grids.
+#[derive(Debug)]
+pub struct WithGridErrors {
+    /// Table `realizations` without the cases that are only coarser grids of others.
+    pub realizations: Frame,
+    /// Table `cases` without these cases.
+    pub cases: Frame,
+    /// Table `grids`.
+    pub grids: Frame,
+}
+
+/// Fills the columns `*_grid_error` of both tables, and drops the rows of cases that are only coarser grids
+/// of others.
+///
+/// # Errors
+/// If a table lacks a column.
+pub fn with_grid_errors(
+    realizations: &Frame,
+    cases: &Frame,
+    inputs: &[CaseInput],
+    rule: GridRule,
+) -> Result<WithGridErrors, StatsError> {
+    let loops = Loops::of(realizations, inputs)?;
+    let hidden: BTreeSet<&str> =
+        inputs.iter().filter(|case| case.is_coarser_grid).map(|case| case.case_id.as_str()).collect();
+    let of_loops = (0..realizations.row_count()).map(|row| loops.errors(row, rule));
+    let by_case: HashMap<&str, &CaseInput> =
+        inputs.iter().map(|case| (case.case_id.as_str(), case)).collect();
+    let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
+    let (mut of_cases, mut grids) = (Vec::new(), Rows::of(&GRIDS));
+    for (id, load) in ids.iter().zip(&loads) {
+        let series = by_case.get(id).map(|case| loops.series(case, *load)).unwrap_or_default();
+        of_cases.push(series.last().map(|grid| grid.errors(rule)).unwrap_or_default());
+        if series.len() > 1 && !hidden.contains(id) {
+            for grid in &series {
+                grids.push(&[&grid.row(id, *load, rule)]);
+            }
+        }
+    }
+    Ok(WithGridErrors {
+        realizations: filled(realizations, &of_loops.collect::<Vec<_>>(), &hidden)?,
+        cases: filled(cases, &of_cases, &hidden)?,
+        grids: grids.build()?,
+    })
+}
+
+/// Relative errors of the results, in the order of [`QUANTITIES`].
+type Errors = [Option<f64>; QUANTITIES.len()];
+
+/// A table with the columns of errors, without the rows of some cases.
+fn filled(frame: &Frame, errors: &[Errors], hidden: &BTreeSet<&str>) -> Result<Frame, StatsError> {
+    let ids = frame.text("case_id")?;
+    let kept: Vec<usize> = (0..ids.len()).filter(|row| !hidden.contains(ids[*row])).collect();
+    let mut built = Frame::of(frame.table());
+    for (column, data) in frame.columns() {
+        let place = QUANTITIES.iter().position(|(_, stem)| error_column(stem) == column.name);
+        let data = match (place, data) {
+            (Some(place), _) => ColumnData::F64(kept.iter().map(|row| errors[*row][place]).collect()),
+            (None, ColumnData::F64(values)) => ColumnData::F64(picked(values, &kept)),
+            (None, ColumnData::I64(values)) => ColumnData::I64(picked(values, &kept)),
+            (None, ColumnData::Bool(values)) => ColumnData::Bool(picked(values, &kept)),
+            (None, ColumnData::Text(values)) => ColumnData::Text(picked(values, &kept)),
+        };
+        built = built.with(column.name, data);
+    }
+    Ok(built.build()?)
+}
+
+fn picked<T: Clone>(values: &[T], rows: &[usize]) -> Vec<T> {
+    rows.iter().map(|row| values[*row].clone()).collect()
+}
+
+/// Name of the column of an error.
+fn error_column(stem: &str) -> String {
+    format!("{stem}_grid_error")
+}
+
+/// All loops by boundary elements, by row of the table `realizations`.
+struct Loops<'a> {
+    /// Family, bits of the load, and realization of each row; nothing for other methods.
+    keys: Vec<Option<(&'a str, u64, i64)>>,
+    case_ids: Vec<&'a str>,
+    points: Vec<f64>,
+    values: Vec<Errors>,
+    /// Rows of each family and load.
+    rows: HashMap<(&'a str, u64), Vec<usize>>,
+}
+
+impl<'a> Loops<'a> {
+    fn of(realizations: &'a Frame, inputs: &'a [CaseInput]) -> Result<Self, StatsError> {
+        let families: HashMap<&str, &str> =
+            inputs.iter().filter_map(|case| Some((case.case_id.as_str(), case.family.as_deref()?))).collect();
+        let (case_ids, loads) = (realizations.text("case_id")?, realizations.f64("max_load")?);
+        let numbers = realizations.i64("realization")?;
+        let points = realizations.f64_or_null("elements_per_wavelength")?;
+        let columns = QUANTITIES.map(|(column, _)| realizations.f64_or_null(column));
+        let key = |row: usize| {
+            let family = points[row].and(families.get(case_ids[row]))?;
+            Some((*family, loads[row].to_bits(), numbers[row]))
+        };
+        let keys: Vec<_> = (0..case_ids.len()).map(key).collect();
+        let mut rows: HashMap<_, Vec<usize>> = HashMap::new();
+        for (row, key) in keys.iter().enumerate() {
+            if let Some((family, load, _)) = key {
+                rows.entry((*family, *load)).or_default().push(row);
+            }
+        }
+        let mut values = vec![Errors::default(); case_ids.len()];
+        for (place, column) in columns.into_iter().enumerate() {
+            for (row, value) in column?.iter().enumerate() {
+                values[row][place] = *value;
+            }
+        }
+        let points = points.iter().map(|points| points.unwrap_or_default()).collect();
+        Ok(Self { keys, case_ids, points, values, rows })
+    }
+
+    /// Errors of the results of one loop, from loops of the same surface.
+    fn errors(&self, row: usize, rule: GridRule) -> Errors {
+        let Some((family, load, realization)) = self.keys[row] else { return Errors::default() };
+        let of_surface = self.rows[&(family, load)].iter().filter(|other| {
+            self.keys[**other].is_some_and(|key| key.2 == realization)
+                && self.points[**other] < self.points[row]
+        });
+        // Equal grids of different cases count once.
+        let mut coarser: Vec<usize> = of_surface.copied().collect();
+        coarser.sort_by(|a, b| self.points[*a].total_cmp(&self.points[*b]));
+        coarser.dedup_by(|a, b| self.points[*a] == self.points[*b]);
+        let finest = coarser.split_off((coarser.len() + 1).saturating_sub(MOST));
+        let all: Vec<usize> = finest.into_iter().chain([row]).collect();
+        let points: Vec<f64> = all.iter().map(|of| self.points[*of]).collect();
+        std::array::from_fn(|place| {
+            let values = all.iter().map(|of| self.values[*of][place]).collect::<Option<Vec<f64>>>()?;
+            estimate(rule, &points, &values).map(|of| of.relative)
+        })
+    }
+
+    /// Grids of a case at a load reversal, the finest last: the coarser ones of its family, and its own.
+    /// Empty without a finished loop.
+    fn series(&self, case: &CaseInput, max_load: f64) -> Vec<Grid<'a>> {
+        let Some(family) = case.family.as_deref() else { return Vec::new() };
+        let Some(rows) = self.rows.get(&(family, max_load.to_bits())) else { return Vec::new() };
+        let mut by_case: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for row in rows {
+            by_case.entry(self.case_ids[*row]).or_default().push(*row);
+        }
+        let Some(own) = by_case.remove(case.case_id.as_str()) else { return Vec::new() };
+        let resolution = |rows: &[usize]| mean(rows.iter().map(|row| self.points[*row]));
+        let finest = resolution(&own);
+        let mut all: Vec<(f64, Vec<usize>)> = by_case
+            .into_values()
+            .map(|rows| (resolution(&rows), rows))
+            .filter(|(of, _)| *of < finest)
+            .collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        all.dedup_by(|a, b| a.0 == b.0);
+        all.push((finest, own));
+        let all = all.split_off(all.len().saturating_sub(MOST));
+        let common = self.common(&all);
+        let of_common = |rows: &[usize], place: usize, surfaces: &BTreeSet<i64>| {
+            let values = rows.iter().filter_map(|row| {
+                let is_common = self.keys[*row].is_some_and(|key| surfaces.contains(&key.2));
+                self.values[*row][place].filter(|_| is_common)
+            });
+            Some(mean(values)).filter(|_| !surfaces.is_empty())
+        };
+        let mut series: Vec<Grid<'a>> = Vec::new();
+        for (points, rows) in &all {
+            let coarser = series.last().map_or(&[][..], |grid| &grid.points);
+            let points = [coarser, &[*points]].concat();
+            let values = std::array::from_fn(|place| {
+                let coarser = series.last().map_or(&[][..], |grid| &grid.values[place]);
+                [coarser, &[of_common(rows, place, &common[place])]].concat()
+            });
+            series.push(Grid {
+                case_id: self.case_ids[rows[0]],
+                points,
+                values,
+                surface_count: common[2].len(),
+            });
+        }
+        series
+    }
+
+    /// Surfaces with a value of each result on all grids.
+    fn common(&self, all: &[(f64, Vec<usize>)]) -> [BTreeSet<i64>; QUANTITIES.len()] {
+        std::array::from_fn(|place| {
+            let of = |rows: &[usize]| -> BTreeSet<i64> {
+                let known = rows.iter().filter(|row| self.values[**row][place].is_some());
+                known.filter_map(|row| self.keys[*row].map(|key| key.2)).collect()
+            };
+            all.iter().map(|(_, rows)| of(rows)).reduce(|a, b| &a & &b).unwrap_or_default()
+        })
+    }
+}
+
+/// One grid of a series with the coarser ones.
+#[derive(Debug)]
+struct Grid<'a> {
+    case_id: &'a str,
+    /// Points per shortest wavelength of the grids up to this one.
+    points: Vec<f64>,
+    /// Means of each result on these grids.
+    values: [Vec<Option<f64>>; QUANTITIES.len()],
+    surface_count: usize,
+}
+
+impl Grid<'_> {
+    fn estimate(&self, place: usize, rule: GridRule) -> Option<GridEstimate> {
+        let values = self.values[place].iter().copied().collect::<Option<Vec<f64>>>()?;
+        estimate(rule, &self.points, &values)
+    }
+
+    fn errors(&self, rule: GridRule) -> Errors {
+        std::array::from_fn(|place| self.estimate(place, rule).map(|of| of.relative))
+    }
+
+    /// Row of the table `grids`.
+    fn row(&self, case_id: &str, max_load: f64, rule: GridRule) -> Given {
+        let mut row: Given = vec![
+            ("case_id".to_owned(), case_id.into()),
+            ("max_load".to_owned(), max_load.into()),
+            ("grid_case_id".to_owned(), self.case_id.into()),
+            ("elements_per_wavelength".to_owned(), self.points.last().copied().into()),
+            ("surface_count".to_owned(), self.surface_count.into()),
+        ];
+        for (place, (column, stem)) in QUANTITIES.into_iter().enumerate() {
+            let of = self.estimate(place, rule);
+            row.push((format!("{column}_mean"), self.values[place].last().copied().flatten().into()));
+            row.push((error_column(stem), of.map(|of| of.relative).into()));
+            row.push((format!("{stem}_extrapolated"), of.and_then(|of| of.extrapolated).into()));
+        }
+        row
+    }
+}
+
+/// Estimate of a series of at least two grids, if it is finite.
+fn estimate(rule: GridRule, points: &[f64], values: &[f64]) -> Option<GridEstimate> {
+    let found = (points.len() > 1).then(|| rule(points, values)).flatten();
+    found.filter(|of| of.relative.is_finite())
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let all: Vec<f64> = values.collect();
+    all.iter().sum::<f64>() / all.len() as f64
+}

@@ -1,0 +1,116 @@
+//! The dissipated energy of each case by boundary elements with its errors: of the grid, and of the mean over
+//! surfaces.
+
+use super::listed::Listed;
+use super::{StatsError, significant};
+use crate::model::{Choice as _, Method};
+use crate::store::Frame;
+
+/// Lines of one sweep, at most.
+const MOST: usize = 8;
+
+/// Words of small numbers.
+const WORDS: [&str; 11] =
+    ["two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
+
+/// Columns of the table `cases` that the sentences name.
+struct Columns<'a> {
+    means: &'a [Option<f64>],
+    highs: &'a [Option<f64>],
+    grid: &'a [Option<f64>],
+    done: Vec<i64>,
+    methods: Vec<&'a str>,
+}
+
+impl<'a> Columns<'a> {
+    fn of(cases: &'a Frame) -> Result<Self, StatsError> {
+        Ok(Self {
+            means: cases.f64_or_null("loss_mean")?,
+            highs: cases.f64_or_null("loss_ci95_high")?,
+            grid: cases.f64_or_null("loss_grid_error")?,
+            done: cases.i64("done_count")?,
+            methods: cases.text("method")?,
+        })
+    }
+
+    /// Mean of a row by boundary elements.
+    fn mean(&self, row: usize) -> Option<f64> {
+        self.means[row].filter(|_| self.methods[row] == Method::BoundaryElements.word())
+    }
+
+    /// Θ of a row with a grid error.
+    fn sentence(&self, row: usize) -> Option<String> {
+        let (mean, error) = self.mean(row).zip(self.grid[row])?;
+        let surfaces = count(self.done[row]);
+        let of_surfaces = self.highs[row].filter(|_| mean != 0.0).map_or_else(
+            || format!(" ({surfaces})"),
+            |high| format!(" ± {} ({surfaces})", percent((high - mean) / mean.abs())),
+        );
+        Some(format!("Θ = {} ± {} (grid){of_surfaces}", number(mean), percent(error)))
+    }
+}
+
+/// `Θ = 1.46e-3 ± 3 % (grid) ± 12 % (six surfaces)` of a row of the table `cases`: the mean over
+/// E* A0 h_rms, its estimated discretization error, and the half-width of its 95 % confidence interval.
+/// Nothing without a discretization error.
+///
+/// # Errors
+/// If the table lacks a column.
+pub fn grid_verdict(cases: &Frame, row: usize) -> Result<Option<String>, StatsError> {
+    Ok(Columns::of(cases)?.sentence(row))
+}
+
+/// Help where some rows have results by boundary elements, and none has a grid error; nothing otherwise.
+///
+/// # Errors
+/// If the table lacks a column.
+pub fn grid_help(cases: &Frame, rows: &[usize]) -> Result<Option<String>, StatsError> {
+    let (columns, points) = (Columns::of(cases)?, cases.f64_or_null("element_points")?);
+    let mut by_elements = rows.iter().copied().filter(|row| columns.mean(*row).is_some());
+    let Some(first) = by_elements.clone().next() else { return Ok(None) };
+    let finest = points[first].unwrap_or(128.0);
+    let is_unknown = by_elements.all(|row| columns.grid[row].is_none());
+    Ok(is_unknown.then(|| {
+        let coarser = (finest / 2.0).round();
+        format!("grid error unknown; boundary_elements.points = [{coarser}, {finest}] estimates it")
+    }))
+}
+
+/// Sentences on the listed rows, each with its case and load, and the rest of them as a number.
+pub(super) fn lines(cases: &Frame, rows: &[Listed], loads: &[String]) -> Result<Vec<String>, StatsError> {
+    let columns = Columns::of(cases)?;
+    let of = |listed: &Listed| {
+        let sentence = columns.sentence(listed.row)?;
+        let label = listed.label.replace(" = ", "=");
+        Some(format!("{label}, F_max={}: {sentence}", loads.get(listed.row)?))
+    };
+    let mut all: Vec<String> = rows.iter().filter_map(of).collect();
+    let rest = all.len().saturating_sub(MOST);
+    all.truncate(MOST);
+    all.extend((rest > 0).then(|| format!("{rest} more: loss_grid_error in statistics/cases.parquet")));
+    Ok(all)
+}
+
+/// A share in percent with two digits below 10 %, and at most 1000 %.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent > 1000.0 { "1000 % or more".to_owned() } else { format!("{} %", significant(percent, 2)) }
+}
+
+/// A number with three digits and its exponent: 1.46e-3.
+fn number(value: f64) -> String {
+    if (0.1..1000.0).contains(&value.abs()) || value == 0.0 {
+        significant(value, 3)
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+/// A number of surfaces, small ones as words.
+fn count(surfaces: i64) -> String {
+    if surfaces == 1 {
+        return "one surface".to_owned();
+    }
+    let word = usize::try_from(surfaces - 2).ok().and_then(|place| WORDS.get(place));
+    word.map_or_else(|| format!("{surfaces} surfaces"), |word| format!("{word} surfaces"))
+}

@@ -1,0 +1,151 @@
+//! Loops by boundary elements on coarser grids, and the discretization errors that follow from them.
+
+use crate::bench::{Bench, code, stderr, stdout};
+use crate::elements::{campaign, statistics};
+use hysteron::physics::theory::grid_convergence::grid_error;
+use hysteron::schema;
+use hysteron::store::Frame;
+use std::fs;
+
+/// Two surfaces of ζ = 4 on three grids: some seconds.
+const SPEC: &str = r#"
+name = "grids"
+seed = 7
+realizations = 2
+[surface]
+magnification = 4
+[model]
+method = "boundary_elements"
+[boundary_elements]
+points = [16, 32, 64]
+approach_step = 0.1
+[cycle]
+max_load = [0.002, 0.004]
+"#;
+
+/// The same grids as cases of a sweep.
+fn swept() -> String {
+    SPEC.replace("points = [16, 32, 64]\n", "") + "[[sweep]]\nname = \"N\"\nboundary_elements.points = [16, 32, 64]\n"
+}
+
+const ERRORS: [&str; 5] = ["area", "pull_off", "loss", "loading", "unloading"];
+const COLUMNS: [&str; 5] = ["area_at_max_load", "pull_off_load", "loss", "dissipated_loading", "dissipated_unloading"];
+
+fn column(frame: &Frame, name: &str) -> Vec<Option<f64>> {
+    frame.f64_or_null(name).unwrap().to_vec()
+}
+
+/// Runs a spec to its end.
+fn finished(spec: &str) -> (Bench, String) {
+    let bench = Bench::new(spec);
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}{}", stdout(&run), stderr(&run));
+    let said = stdout(&run);
+    (bench, said)
+}
+
+/// A list of grids and a sweep over them compute the same cycles, and the finest case has the same errors. Those of single surfaces and of
+/// means are the estimate from the values in the tables.
+#[test]
+fn e2e_errors_of_a_list_are_those_of_a_sweep() {
+    let (list, said) = finished(SPEC);
+    let (sweep, of_sweep) = finished(&swept());
+    let [ours, theirs] = [&list, &sweep].map(|bench| statistics(bench, &schema::REALIZATIONS));
+    assert_eq!((ours.row_count(), theirs.row_count()), (4, 12));
+    let finest: Vec<usize> = (0..12).filter(|row| column(&theirs, "element_points")[*row] == Some(64.0)).collect();
+    let keys = |bench: &Bench| {
+        let mut keys: Vec<String> = campaign(bench).distinct_cycles().into_iter().map(|unit| unit.key).collect();
+        keys.sort();
+        keys
+    };
+    assert_eq!(keys(&list), keys(&sweep));
+    for (error, result) in ERRORS.iter().zip(COLUMNS) {
+        let error = format!("{error}_grid_error");
+        let (of_list, of_sweep) = (column(&ours, &error), column(&theirs, &error));
+        let values = theirs.f64(result).unwrap();
+        for (row, place) in finest.iter().enumerate() {
+            assert_eq!(of_list[row], of_sweep[*place], "{error}");
+            // Rows are sorted by case, load and realization: the other grids of one loop are those of equal load and realization.
+            let same = |other: &usize| {
+                let [loads, realizations] = ["max_load", "elements_per_wavelength"].map(|name| theirs.f64(name).unwrap());
+                let numbers = theirs.i64("realization").unwrap();
+                (loads[*other] == loads[*place] && numbers[*other] == numbers[*place]).then(|| (realizations[*other], values[*other]))
+            };
+            let mut series: Vec<(f64, f64)> = (0..12).filter_map(|other| same(&other)).collect();
+            series.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let (points, values): (Vec<f64>, Vec<f64>) = series.into_iter().unzip();
+            assert_eq!(points, [4.0, 8.0, 16.0]);
+            assert_eq!(of_list[row], Some(grid_error(&points, &values).unwrap().relative), "{error}");
+        }
+    }
+    // A case on the coarsest grid has no error, and on the second one that of two grids.
+    for (row, points) in column(&theirs, "element_points").iter().enumerate() {
+        assert_eq!(column(&theirs, "loss_grid_error")[row].is_none(), *points == Some(16.0));
+    }
+    let [cases, swept_cases, grids] =
+        [(&list, &schema::CASES), (&sweep, &schema::CASES), (&list, &schema::GRIDS)].map(|(bench, table)| statistics(bench, table));
+    assert_eq!((cases.row_count(), swept_cases.row_count(), grids.row_count()), (2, 6, 6));
+    for (error, result) in ERRORS.iter().zip(COLUMNS) {
+        let means = grids.f64(&format!("{result}_mean")).unwrap();
+        let of_cases = column(&cases, &format!("{error}_grid_error"));
+        assert_eq!(of_cases, column(&swept_cases, &format!("{error}_grid_error"))[4..], "{error}");
+        for load in [0, 1] {
+            let of = grid_error(&[4.0, 8.0, 16.0], &means[3 * load..3 * load + 3]).unwrap();
+            assert_eq!(of_cases[load], Some(of.relative), "{error}");
+            assert_eq!(column(&grids, &format!("{error}_extrapolated"))[3 * load + 2], of.extrapolated, "{error}");
+        }
+    }
+    for (text, rows) in [(&said, 2), (&of_sweep, 4)] {
+        assert_eq!(text.matches("% (grid) ±").count(), rows, "{text}");
+        assert!(text.contains("(two surfaces)") && text.lines().all(|line| line.chars().count() <= 80 || line.contains('/')), "{text}");
+    }
+    assert!(!said.contains("grid error unknown") && !of_sweep.contains("grid error unknown"), "{said}{of_sweep}");
+}
+
+/// Loops on coarser grids are tasks: planned, counted and resumed. They are in no table of results, no figure and no explorer.
+#[test]
+fn e2e_coarser_grids_are_tasks_and_no_cases() {
+    let bench = Bench::new(SPEC);
+    let plan = stdout(&bench.verb("plan", &[]));
+    assert!(plan.contains("1 case with 2 coarser grids, 2 realizations\n") && plan.contains("cycle     6 planned"), "{plan}");
+    assert!(plan.contains("grid 16 to 64 points a side"), "{plan}");
+    assert!(!plan.contains("warning[coarse]"), "{plan}");
+    // One of two shards has one surface with all of its grids.
+    assert_eq!(code(&bench.verb("cycle", &["--shard", "1/2"])), 1, "surfaces are missing");
+    assert_eq!(code(&bench.verb("run", &["--until", "cycle", "--shard", "1/2"])), 0);
+    let status = stdout(&bench.look("status", &[]));
+    assert!(status.contains("cycle     3 done, 3 planned"), "{status}");
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    assert!(stdout(&run).contains("cycle     3 of 6 computed, 3 done before"), "{}", stdout(&run));
+    assert!(stdout(&bench.verb("run", &[])).contains("Nothing to do"));
+    let hidden: Vec<String> = campaign(&bench).cases.into_iter().filter(|unit| unit.case.is_coarser_grid()).map(|unit| unit.id).collect();
+    assert_eq!(hidden.len(), 2);
+    for table in [&schema::CASES, &schema::REALIZATIONS, &schema::CURVES, &schema::AVALANCHES, &schema::CUTOFF, &schema::GRIDS] {
+        let frame = statistics(&bench, table);
+        assert!(frame.text("case_id").unwrap().iter().all(|id| !hidden.iter().any(|of| of == id)), "{}", table.name);
+    }
+    // The table of cycles has all tasks, those of coarser grids in a sweep of that name.
+    let cycles = statistics(&bench, &schema::CYCLES);
+    assert_eq!(cycles.text("sweep").unwrap().iter().filter(|sweep| **sweep == "coarser grids").count(), 4);
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    assert!(page.contains(">Grid error</h2>") && bench.out().join("figures/grids_1.svg").is_file());
+    assert!(!page.contains("NaN") && !page.contains("Sweep coarser") && page.contains("1 case, 2 realizations each"), "page");
+    assert!(hidden.iter().all(|id| !page.contains(id)));
+    let case = campaign(&bench).cases[0].id.clone();
+    let shown = stdout(&bench.look("show", &[&case]));
+    assert!(shown.contains("\nVerdict\n  Θ = ") && shown.contains("% (grid) ±"), "{shown}");
+    assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
+}
+
+/// Without coarser grids the error is unknown, which the end of a run says once.
+#[test]
+fn e2e_without_coarser_grids_the_error_is_unknown() {
+    let spec = SPEC.replace("[16, 32, 64]", "32").replace("[0.002, 0.004]", "[0.004]").replace("realizations = 2", "realizations = 1");
+    let (bench, said) = finished(&spec);
+    assert_eq!(said.matches("help: grid error unknown; boundary_elements.points = [16, 32] estimates it").count(), 1, "{said}");
+    assert_eq!(statistics(&bench, &schema::GRIDS).row_count(), 0);
+    // Of asperities nothing is said.
+    let (_, said) = finished(&spec.replace("\"boundary_elements\"", "\"asperities\""));
+    assert!(!said.contains("grid error"), "{said}");
+}
