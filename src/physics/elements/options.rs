@@ -1,5 +1,6 @@
 //! Options of boundary elements.
 
+use super::law::Front;
 use super::numerics::Numerics;
 use crate::model::{KeptContacts, Machine, Probe, Substrate};
 
@@ -32,6 +33,8 @@ pub struct Options {
     pub points: usize,
     /// Attraction.
     pub attraction: Attraction,
+    /// Corrections of the law of bonded attraction.
+    pub law: Front,
     /// Sphere that carries the roughness; none for a flat surface. Its apex is in the middle of the square,
     /// which is then periodic.
     pub probe: Option<Probe>,
@@ -56,6 +59,7 @@ impl Default for Options {
         Self {
             points: 0,
             attraction: Attraction::Bonded { nucleation_m: 0.0, strength: f64::INFINITY },
+            law: Front::PLAIN,
             probe: None,
             substrate: None,
             machine: Machine::default(),

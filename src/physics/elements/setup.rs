@@ -83,7 +83,14 @@ fn medium(units: &Units, options: &Options) -> Medium {
         thickness: substrate.thickness_m / units.spacing_m(),
         poisson_ratio: substrate.poisson_ratio,
     });
-    Medium { layer, series_compliance: cell + units.machine_compliance * points * points }
+    Medium {
+        layer,
+        series_compliance: cell + units.machine_compliance * points * points,
+        wall_compliance: match options.attraction {
+            Attraction::Bonded { .. } => options.law.wall_compliance(),
+            Attraction::Range { .. } => 0.0,
+        },
+    }
 }
 
 /// The contact problem of heights \[m\] on the grid.
@@ -101,7 +108,7 @@ pub(super) fn problem(
     let (law, attraction) = match options.attraction {
         Attraction::Range { range_m } => (Law::morse(work, range_m / spacing), Rule::Range),
         Attraction::Bonded { nucleation_m, strength } => (
-            Law::crack(work),
+            Law::front(work, &options.law),
             Rule::Bonded {
                 margin: options.numerics.equilibrium.bond_margin,
                 nucleation: nucleation_m / spacing,

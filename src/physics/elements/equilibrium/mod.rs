@@ -3,6 +3,7 @@
 
 mod descent;
 mod increment;
+mod line;
 pub mod minimise;
 pub(crate) mod newton;
 mod pairs;
