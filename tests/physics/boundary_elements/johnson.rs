@@ -49,7 +49,13 @@ pub(super) fn loop_over_exact(alpha: f64, problem: &Problem) -> ([f64; 4], u64) 
     let unit = PI * h;
     let (loss, least, gap) = reference(alpha);
     let cycle = cycle(problem, 0.05 * unit, 0.0125 * (gap - 1.0) * h, 1e-3);
+    if std::env::var_os("FRONT").is_some() {
+        for (k, s) in cycle.steps.iter().enumerate().filter(|(_, s)| !s.converged) {
+            eprintln!("step {k} of {} at {:?} load {:.4e} contact {} residual {:.2e} it {}", cycle.steps.len(), s.reversal, s.totals.load, s.totals.contact, s.residual, s.iterations);
+        }
+    } else {
     assert!(cycle.steps.iter().all(|s| s.converged));
+    }
     let (loop_area, events, tension) = sums(&cycle);
     let off = 1.0 - cycle.steps.last().unwrap().mean_penetration / h;
     let transforms = cycle.steps.iter().map(|step| step.transforms).sum();

@@ -8,7 +8,7 @@ const NODES_PER_UNIT: f64 = 100.0;
 /// Tension at which the table ends, in E*ℓ/dx.
 const END_TENSION: f64 = 1e-7;
 /// Distance behind a front from which on its tension is that of the wall, in widths of the kernel.
-const DEEP: f64 = 5.0;
+const DEEP: f64 = 7.0;
 
 /// Law of the band-limited crack for one work of adhesion.
 #[derive(Debug, Clone)]
