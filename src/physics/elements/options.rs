@@ -54,6 +54,18 @@ pub struct Options {
     pub numerics: Numerics,
 }
 
+impl Options {
+    /// True with bonded attraction, which has the law of the band-limited crack.
+    pub(super) fn is_bonded(&self) -> bool {
+        matches!(self.attraction, Attraction::Bonded { .. })
+    }
+
+    /// True if heights are divided by the spectrum of the kernel of the law.
+    pub(super) fn emphasises(&self) -> bool {
+        self.is_bonded() && self.law.is_emphasised
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {

@@ -7,6 +7,13 @@ use super::{BONDED, problem};
 use hysteron::physics::elements::grid::half_space::HalfSpace;
 use hysteron::physics::elements::grid::medium::Medium;
 use hysteron::physics::elements::law::{Front, Law};
+use hysteron::physics::cycle::Method;
+use hysteron::physics::elements::{Elements, Options};
+use hysteron::physics::model::{Amplitudes, Material, Normalization};
+use hysteron::physics::surface::HeightMap;
+use hysteron::physics::surface::shape::Shape;
+use hysteron::physics::surface::spectrum::Spectrum;
+use hysteron::physics::surface::synthesis::{realization_seed, synthesize};
 use std::f64::consts::{PI, TAU};
 
 fn front() -> Front {
@@ -49,7 +56,7 @@ fn explore() {
             let forces = smooth();
             let mut off = Vec::new();
             for step in cycle.steps.iter().filter(|s| s.area_m2 > 0.5 * PI * a0() * a0()) {
-                let k = (0..forces.len()).rev().find(|k| forces[*k][1] <= step.load_n).unwrap();
+                let Some(k) = (0..forces.len()).rev().find(|k| forces[*k][1] <= step.load_n) else { continue };
                 off.push(((step.area_m2 / PI).sqrt() - branch[k]) / dx);
             }
             let mean = off.iter().sum::<f64>() / off.len() as f64;
@@ -74,6 +81,39 @@ fn explore() {
                 100.0 * (found.loss_j / exact.loss_j - 1.0)
             );
         }
+    }
+    if what.contains('r') {
+        let number = |name: &str, otherwise: f64| std::env::var(name).map_or(otherwise, |text| text.parse().unwrap());
+        let (seed, points, work, hurst) = (number("SEED", 71.0) as u64, number("POINTS", 64.0) as usize, number("WORK", 0.07), number("HURST", 0.8));
+        let spectrum = Spectrum {
+            length_m: 1e-3,
+            rms_height_m: 5e-6,
+            hurst,
+            magnification: 8,
+            normalization: Normalization::Spectrum,
+            amplitudes: Amplitudes::Fixed,
+            shape: Shape::default(),
+        };
+        let surface = synthesize(&spectrum, &realization_seed(seed, 0), 64);
+        let map = HeightMap { heights_m: surface.heights_m.view(), length_m: 1e-3, is_periodic: true, shortest_wavelength_m: 1e-3 / 8.0, rms_height_m: 5e-6 };
+        let material = Material { work_of_adhesion_j_m2: work, ..Material::default() };
+        let mut options = Options { points, law: front, ..Options::default() };
+        options.numerics.equilibrium.bond_margin = number("MARGIN", 2.0) as usize;
+        let cycle = Elements::new(&map, &material, &[0.0071], &options).unwrap().run().unwrap();
+        let bad = cycle.steps.iter().filter(|s| !s.numerics.is_converged).count();
+        let transforms: u64 = cycle.steps.iter().map(|s| s.numerics.effort.transforms).sum();
+        let turn = &cycle.steps[cycle.turning[0].0];
+        let loss = turn.work_j + cycle.steps.last().unwrap().work_j;
+        let events: f64 = cycle.events.iter().map(|event| event.energy_lost_j).sum();
+        let pull = cycle.steps.iter().map(|step| -step.least_load_n).fold(0.0, f64::max);
+        eprintln!(
+            "rough {seed} {work} {hurst} {points}: A {:.4} F {:.4e} Θ {:.5e} events {:.5e} transforms {transforms} steps {} unconverged {bad}",
+            turn.area_m2 / 1e-6,
+            pull / 1.0,
+            loss / (1.0 * 5e-6),
+            events / 5e-6,
+            cycle.steps.len()
+        );
     }
     let _ = (MATERIAL, RADIUS);
 }

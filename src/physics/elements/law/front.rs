@@ -18,9 +18,13 @@
 //! # Line tension
 //! The energy is `λ Δγ Σ φ Lφ`, with a function `φ(g')` that falls from 1 inside contact to 0 outside, and
 //! the negative Laplacian `L` of 9 points, `(20, −4, −1)/6`, which is isotropic up to the fourth order. At a
-//! straight front `φ` is a smooth step of the place x, and `λ ∫φ Lφ dx = c₁ dx`. The tension of a point is
-//! `V'(g') + 2λ Δγ φ'(g') Lφ`. `V'` is the tension of the straight front less the second term there, so that
-//! a straight front is in equilibrium as before. `∫V' dg' = Δγ`, since `∫φ_x Lφ dx = 0` by symmetry.
+//! straight front `φ` is a smooth step of the place x. The tension of a point is `V'(g') + 2λ Δγ φ'(g') Lφ`.
+//! `V'` is the tension of the straight front less the second term there, so that a straight front is in
+//! equilibrium as before. `∫V' dg' = Δγ`, since `∫φ_x Lφ dx = 0` by symmetry.
+//!
+//! The line tension is `2λ Δγ ∫φ Lφ dx`: one half is the energy of `φ`, the other that of the change of `V`,
+//! `λ Δγ ∫φ_x² dx`, which is at the front as well. At a circular front `Lφ` has the additional term `−κ φ_x`,
+//! whose work is `2λ Δγ κ ∫φ_x² dx`.
 
 use super::{KERNEL_WIDTH, WALL_STIFFNESS};
 use std::f64::consts::PI;
@@ -90,7 +94,7 @@ impl Front {
             let x = f64::from(k) * step - end;
             (self.step(x + 1.0)[0] - self.step(x)[0]).powi(2)
         };
-        self.line * self.curvature_coefficient() / (step * (0..count).map(energy).sum::<f64>())
+        0.5 * self.line * self.curvature_coefficient() / (step * (0..count).map(energy).sum::<f64>())
     }
 
     /// Step φ at the place x, with its first and second derivative: the integral of `(1 − (x/reach)²)³`.
