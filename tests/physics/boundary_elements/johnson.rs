@@ -40,26 +40,19 @@ fn computed(alpha: f64, n: usize, attraction: Attraction, range: Option<f64>) ->
     let h = SLOPE * n as f64;
     let work = (alpha * PI / 2.0_f64.sqrt() * SLOPE).powi(2) * n as f64;
     let law = range.map_or_else(|| Law::crack(work), |range| Law::morse(work, range * work.sqrt()));
-    loop_over_exact(alpha, &problem(1, n, |_, k| h * (TAU * k as f64 / n as f64).cos(), law, attraction)).0
+    loop_over_exact(alpha, &problem(1, n, |_, k| h * (TAU * k as f64 / n as f64).cos(), law, attraction))
 }
 
-/// The same of a problem, and the transforms of the loop.
-pub(super) fn loop_over_exact(alpha: f64, problem: &Problem) -> ([f64; 4], u64) {
+/// The same of a problem.
+pub(super) fn loop_over_exact(alpha: f64, problem: &Problem) -> [f64; 4] {
     let h = SLOPE * problem.heights.len() as f64;
     let unit = PI * h;
     let (loss, least, gap) = reference(alpha);
     let cycle = cycle(problem, 0.05 * unit, 0.0125 * (gap - 1.0) * h, 1e-3);
-    if std::env::var_os("FRONT").is_some() {
-        for (k, s) in cycle.steps.iter().enumerate().filter(|(_, s)| !s.converged) {
-            eprintln!("step {k} of {} at {:?} load {:.4e} contact {} residual {:.2e} it {}", cycle.steps.len(), s.reversal, s.totals.load, s.totals.contact, s.residual, s.iterations);
-        }
-    } else {
     assert!(cycle.steps.iter().all(|s| s.converged));
-    }
     let (loop_area, events, tension) = sums(&cycle);
     let off = 1.0 - cycle.steps.last().unwrap().mean_penetration / h;
-    let transforms = cycle.steps.iter().map(|step| step.transforms).sum();
-    ([loop_area / (unit * h) / loss, -tension / unit / least, off / gap, (loop_area - events).abs() / loop_area], transforms)
+    [loop_area / (unit * h) / loss, -tension / unit / least, off / gap, (loop_area - events).abs() / loop_area]
 }
 
 /// The reference by quadrature is that of the table of the analytical branch (α = 0.3: loss 0.033349, ḡ 1.39171, P −0.09594), to its digits.

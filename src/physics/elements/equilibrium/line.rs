@@ -85,8 +85,9 @@ fn sweep(
     }
 }
 
-/// Adds the tension of the line to the gradient, and to the slopes what the slope of the tension of a straight
-/// front has in excess of that of the law. The sums of [`Found`] but that of the elastic response.
+/// Adds the tension of the line to the gradient. Adds to the slopes, for the preconditioner, what the slope of
+/// the tension of a straight front has in excess of that of the law, and a mean stiffness of the line for waves
+/// along the front. The sums of [`Found`] but that of the elastic response.
 pub(super) fn add_line(
     problem: &Problem,
     from: Gaps<'_>,
@@ -119,8 +120,7 @@ pub(super) fn add_line(
     all
 }
 
-/// Adds the tension of the line to a row of the gradient, and the slope of the tension of a straight front in
-/// excess of that of the law to the slopes. The change of the energy in the last step beyond first order.
+/// As [`add_line`], in a row. The change of the energy in the last step beyond first order.
 fn bend_row(rows: [&Row; 3], gradient: &mut [f32], slopes: &mut [f32], factor: f64, is_patch: bool) -> f64 {
     let columns = gradient.len();
     let here = rows[1];
@@ -134,10 +134,9 @@ fn bend_row(rows: [&Row; 3], gradient: &mut [f32], slopes: &mut [f32], factor: f
         let bend = laplacian(rows.map(|row| row.value.as_slice()), at);
         let bend_change = laplacian(rows.map(|row| row.change.as_slice()), at);
         gradient[k] += (factor * of.rate * bend) as f32;
-        slopes[k] += of.excess as f32;
+        slopes[k] += (of.excess + factor * of.rate * of.rate) as f32;
         let change = here.change[k];
-        beyond +=
-            factor * (0.5 * change * bend_change + (bend - bend_change) * (change - here.linear[k]));
+        beyond += factor * (0.5 * change * bend_change + (bend - bend_change) * (change - here.linear[k]));
     }
     beyond
 }
@@ -167,8 +166,10 @@ impl Minimiser {
                 for (k, of) in rows[1].of.iter().enumerate() {
                     rates[here + k] = of.rate as f32;
                     if of.rate != 0.0 {
-                        let bend = laplacian(rows.map(|row| row.value.as_slice()), beside(k, columns, is_patch));
-                        slopes[here + k] += (factor * of.bend * bend - of.excess) as f32;
+                        let bend =
+                            laplacian(rows.map(|row| row.value.as_slice()), beside(k, columns, is_patch));
+                        slopes[here + k] +=
+                            (factor * (of.bend * bend - of.rate * of.rate) - of.excess) as f32;
                     }
                 }
             });

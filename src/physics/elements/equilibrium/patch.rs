@@ -259,8 +259,7 @@ impl Patch {
             let gap = on.displacement(at) - on.state.mean_penetration - on.problem.heights[at];
             law.profile(on.state.bonds[at], gap)
         };
-        let of_patch =
-            |k: usize| law.profile(self.state.bonds[k], self.problem.gap(&self.state, k));
+        let of_patch = |k: usize| law.profile(self.state.bonds[k], self.problem.gap(&self.state, k));
         let is_border = |k: usize| [k / side, k % side].iter().any(|at| *at == 0 || *at == side - 1);
         let (factor, grid) = (law.line_factor(), &on.problem.half_space);
         let held: Vec<(usize, f64)> = self

@@ -22,9 +22,8 @@
 //! `V'` is the tension of the straight front less the second term there, so that a straight front is in
 //! equilibrium as before. `∫V' dg' = Δγ`, since `∫φ_x Lφ dx = 0` by symmetry.
 //!
-//! The line tension is `2λ Δγ ∫φ Lφ dx`: one half is the energy of `φ`, the other that of the change of `V`,
-//! `λ Δγ ∫φ_x² dx`, which is at the front as well. At a circular front `Lφ` has the additional term `−κ φ_x`,
-//! whose work is `2λ Δγ κ ∫φ_x² dx`.
+//! The line tension is `λ Δγ (∫φ Lφ dx + 2∫x φ_x Lφ dx)`: the energy of `φ`, and that of the change of `V`,
+//! which is at the front as well. Both are about `λ Δγ ∫φ_x² dx`.
 
 use super::{KERNEL_WIDTH, WALL_STIFFNESS};
 use std::f64::consts::PI;
@@ -56,7 +55,7 @@ impl Front {
         is_hard: false,
         ends_at_front: false,
         line: 0.0,
-        line_reach: 1.75,
+        line_reach: 1.5,
         is_emphasised: false,
     };
 
@@ -87,14 +86,16 @@ impl Front {
 
     /// Factor λ of the energy of the line.
     pub(super) fn line_factor(&self) -> f64 {
-        // ∫φ Lφ dx = ∫(φ(x + 1) − φ(x))² dx by the trapezoid rule, whose integrand vanishes at both ends.
+        // ∫φ Lφ dx = ∫(φ(x + 1) − φ(x))² dx, and 2 ∫x φ_x Lφ dx of the law, by the trapezoid rule, whose
+        // integrands vanish at both ends.
         let (count, end) = (4000, self.line_reach + 1.0);
         let step = 2.0 * end / f64::from(count);
         let energy = |k: i32| {
             let x = f64::from(k) * step - end;
-            (self.step(x + 1.0)[0] - self.step(x)[0]).powi(2)
+            let [here, slope, _] = self.step(x);
+            (self.step(x + 1.0)[0] - here).powi(2) + 2.0 * x * slope * self.bend(x)[0]
         };
-        0.5 * self.line * self.curvature_coefficient() / (step * (0..count).map(energy).sum::<f64>())
+        self.line * self.curvature_coefficient() / (step * (0..count).map(energy).sum::<f64>())
     }
 
     /// Step φ at the place x, with its first and second derivative: the integral of `(1 − (x/reach)²)³`.
