@@ -37,8 +37,7 @@ fn state_of(problem: &Problem, x: impl Fn(usize, usize) -> f64) -> State {
     let (columns, unit) = (problem.half_space.columns(), problem.law.work().sqrt());
     let mut state = problem.apart(0.0).unwrap();
     for k in 0..state.displacement.len() {
-        // Beyond 5 spacings behind the edge the gap is that of the wall.
-        let [gap, tension] = front(x(k / columns, k % columns).clamp(-8.0, 12.0));
+        let [gap, tension] = front(x(k / columns, k % columns).clamp(-20.0, 20.0));
         state.displacement[k] = unit * (gap + 0.25 * tension) + problem.heights[k];
     }
     state.bonds.fill(Bonding::Bonded);
@@ -87,12 +86,13 @@ fn law_line_tension_around_a_disk() {
     }
 }
 
-/// The work of the law is Δγ to 1e-5, what the table leaves out far from the front.
+/// The work of the law is Δγ to 1e-5, what the table leaves out far from the front; with a flat kernel, which has a repulsive tail, to 1e-4.
 #[test]
 fn law_work_of_adhesion_of_the_corrected_law() {
-    for front in [FRONT, Front { line: 0.0, ..FRONT }, Front { width: 0.75, flatness: 0.4, ..FRONT }] {
+    let flat = Front { width: 0.75, flatness: 0.4, ..FRONT };
+    for (front, tolerance) in [(FRONT, 1e-5), (Front { line: 0.0, ..FRONT }, 1e-5), (flat, 1e-4)] {
         let law = Law::front(0.02, &front);
-        assert!((law.bonded(0.0).energy / -0.02 - 1.0).abs() < 1e-5, "{front:?}: {}", law.bonded(0.0).energy);
+        assert!((law.bonded(0.0).energy / -0.02 - 1.0).abs() < tolerance, "{front:?}: {}", law.bonded(0.0).energy);
     }
 }
 
