@@ -349,7 +349,7 @@ choice! {
     FrontLaw {
         /// Law of a straight front, with contact on a spring.
         Plain = "plain",
-        /// Without the errors of first order in the grid spacing: hard contact, line tension of fronts,
+        /// With smaller errors of first order in the grid spacing: hard contact, line tension of fronts,
         /// heights divided by the spectrum of the law.
         Corrected = "corrected",
     }

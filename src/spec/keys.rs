@@ -335,7 +335,8 @@ pub(super) static KEYS: &[Key] = &[
     key!(boundary_elements.opening in opening, "", "Where contact opens, with `attraction = \"bonded\"`.";
         word Opening),
     key!(boundary_elements.law in law, "", "Law of the edges of contact, with `attraction = \"bonded\"`. \
-         \"corrected\" has no error of first order in the grid spacing, for about 1.7 times the transforms.";
+         \"corrected\" reduces the errors of first order in the grid spacing, for 1.4 to 2 times the \
+         transforms.";
         word FrontLaw),
     key!(boundary_elements.approach_step in elements.approach_step, "", "Step of the mean penetration, as a \
          fraction of h_rms. A sixth of it where adhesion is weak (U_el > 15 Δγ), a thirtieth at U_el > 150 \
