@@ -3,16 +3,15 @@
 //! The step φ of a point follows from its gap, so that no field of it is kept. A band of rows is evaluated
 //! from the first to the last, with three rows of φ at a time.
 
-use super::minimise::Minimiser;
 use super::passes::{Found, Stride};
 use crate::elements::grid::sums::{panel_largest, panel_sums};
 use crate::elements::law::{Bonding, Profile};
 use crate::elements::line::{beside, laplacian};
-use crate::elements::problem::{Problem, State};
+use crate::elements::problem::Problem;
 use rayon::prelude::*;
 
 /// Rows that are evaluated one after another.
-const BAND: usize = 16;
+pub(super) const BAND: usize = 16;
 
 /// Gaps and directions at all points.
 #[derive(Clone, Copy)]
@@ -25,12 +24,12 @@ pub(super) struct Gaps<'a> {
 
 /// Step φ of a row.
 #[derive(Clone, Default)]
-struct Row {
-    value: Vec<f64>,
+pub(super) struct Row {
+    pub(super) value: Vec<f64>,
     /// Change in the last step, and that of first order.
     change: Vec<f64>,
     linear: Vec<f64>,
-    of: Vec<Profile>,
+    pub(super) of: Vec<Profile>,
 }
 
 impl Row {
@@ -62,7 +61,7 @@ impl Row {
 }
 
 /// Calls `with` for each row of a band with φ in the row before, in it and in the row after.
-fn sweep(
+pub(super) fn sweep(
     problem: &Problem,
     from: Gaps<'_>,
     stride: Stride,
@@ -139,64 +138,4 @@ fn bend_row(rows: [&Row; 3], gradient: &mut [f32], slopes: &mut [f32], factor: f
         beyond += factor * (0.5 * change * bend_change + (bend - bend_change) * (change - here.linear[k]));
     }
     beyond
-}
-
-impl Minimiser {
-    /// Replaces the slopes by the second derivatives of the energy at single points, as far as these do not
-    /// come from neighbours, and keeps the rates of φ, for [`Self::add_line_response`].
-    pub(super) fn linearise_line(&mut self, problem: &Problem, state: &State) {
-        if !problem.law.has_line() {
-            return;
-        }
-        let (columns, factor) = (problem.half_space.columns(), problem.law.line_factor());
-        let is_patch = problem.half_space.is_patch();
-        let Self { increment, direction, slopes, rates, .. } = self;
-        let from = Gaps {
-            gap: &increment.gap,
-            displacement: &increment.displacement,
-            direction,
-            bonds: &state.bonds,
-        };
-        let stride = Stride { length: 0.0, mean: 0.0, centre: 0.0 };
-        let bands = slopes.par_chunks_mut(BAND * columns).zip(rates.par_chunks_mut(BAND * columns));
-        bands.enumerate().for_each(|(band, (slopes, rates))| {
-            let first = band * BAND;
-            sweep(problem, from, stride, first..first + slopes.len() / columns, |row, rows| {
-                let here = (row - first) * columns;
-                for (k, of) in rows[1].of.iter().enumerate() {
-                    rates[here + k] = of.rate as f32;
-                    if of.rate != 0.0 {
-                        let bend =
-                            laplacian(rows.map(|row| row.value.as_slice()), beside(k, columns, is_patch));
-                        slopes[here + k] +=
-                            (factor * (of.bend * bend - of.rate * of.rate) - of.excess) as f32;
-                    }
-                }
-            });
-        });
-    }
-
-    /// Adds `2λΔγ φ' L(φ' field)` to the response to a field: the second derivatives between neighbours.
-    pub(super) fn add_line_response(&self, problem: &Problem, field: &[f32], response: &mut [f32]) {
-        if !problem.law.has_line() {
-            return;
-        }
-        let grid = &problem.half_space;
-        let (columns, factor, rates) = (grid.columns(), problem.law.line_factor() as f32, &self.rates);
-        response.par_chunks_mut(columns).enumerate().with_min_len(BAND).for_each(|(row, response)| {
-            let rows = beside(row, grid.rows(), grid.is_patch());
-            for (k, response) in response.iter_mut().enumerate() {
-                let rate = rates[row * columns + k];
-                if rate == 0.0 {
-                    continue;
-                }
-                let places = beside(k, columns, grid.is_patch());
-                let values = rows.map(|row| {
-                    places.map(|k| f64::from(rates[row * columns + k]) * f64::from(field[row * columns + k]))
-                });
-                let [up, here, down] = &values;
-                *response += factor * rate * laplacian([up, here, down], [0, 1, 2]) as f32;
-            }
-        });
-    }
 }

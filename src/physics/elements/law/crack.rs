@@ -46,12 +46,12 @@ pub(super) struct Line {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Profile {
     /// The step, from 1 inside contact to 0 outside.
-    pub(in crate::elements) value: f64,
+    pub(crate) value: f64,
     /// Its first and second derivative to the gap \[1/dx, 1/dx²\].
-    pub(in crate::elements) rate: f64,
-    pub(in crate::elements) bend: f64,
+    pub(crate) rate: f64,
+    pub(crate) bend: f64,
     /// Slope of the tension of a straight front in excess of that of the law \[E*/dx\].
-    pub(in crate::elements) excess: f64,
+    pub(crate) excess: f64,
 }
 
 impl Profile {
