@@ -8,7 +8,7 @@ use std::path::Path;
 /// holds.
 ///
 /// `model`, `constants`, `error`, `event_kind`, `loop_position` and `memory` are free for all.
-const PHYSICS: [(&str, &[&str]); 22] = [
+const PHYSICS: [(&str, &[&str]); 23] = [
     ("math", &[]),
     ("jkr", &[]),
     ("surface", &[]),
