@@ -5,7 +5,9 @@
 
 use super::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit};
 use crate::keys::{canonical, key_of_text, preimage};
-use crate::model::{GeneratedSurface, MeasuredSurface, MethodOptions, SurfaceSource, TabulatedSpectrum};
+use crate::model::{
+    Choice, FrontLaw, GeneratedSurface, MeasuredSurface, MethodOptions, SurfaceSource, TabulatedSpectrum,
+};
 use crate::physics::asperities::Asperities;
 use crate::physics::cycle::Method;
 use crate::physics::elements::Elements;
@@ -243,6 +245,8 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     let mut take = |name: &'static str| (name, tables[name].take());
     let [material, mut model, elements, mut cycle] =
         ["material", "model", "boundary_elements", "cycle"].map(&mut take);
+    let mut elements = elements;
+    remove_plain_law(&mut elements.1);
     let further = OPTIONAL_TABLES.map(&mut take).into_iter().filter(|(_, table)| !table.is_null());
     let of_method = match &params.method {
         MethodOptions::Asperities(_) => {
@@ -265,11 +269,19 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
 pub(super) fn of_whole_case(spec: &Spec, params: &CaseParams) -> Value {
     let mut reads = plain(params);
     reads["surface"] = of_surface(spec, &params.surface);
+    remove_plain_law(&mut reads["boundary_elements"]);
     if params.asperities().is_some() {
         remove(&mut reads, "boundary_elements");
         remove(&mut reads["model"], "method");
     }
     reads
+}
+
+/// The law of boundary elements is an input where it is not the default.
+fn remove_plain_law(elements: &mut Value) {
+    if elements["law"] == FrontLaw::Plain.word() {
+        remove(elements, "law");
+    }
 }
 
 fn remove(value: &mut Value, name: &str) {

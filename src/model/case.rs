@@ -1,9 +1,9 @@
 //! Parameters of a case: surface, material, method and loading path.
 
 use super::{
-    Amplitudes, AttractionKind, Boundary, Coalescence, Interaction, JumpIn, KeptContacts, Machine, Material,
-    MeasuredSurface, Method, Normalization, Nucleation, Opening, Probe, Slip, Slips, SpectrumConvention,
-    SpectrumKind, Substrate,
+    Amplitudes, AttractionKind, Boundary, Coalescence, FrontLaw, Interaction, JumpIn, KeptContacts, Machine,
+    Material, MeasuredSurface, Method, Normalization, Nucleation, Opening, Probe, Slip, Slips,
+    SpectrumConvention, SpectrumKind, Substrate,
 };
 use crate::physics::surface::psd_table::PsdTable;
 use crate::physics::surface::shape::Shape;
@@ -154,6 +154,8 @@ pub enum Attraction {
         nucleation: Nucleation,
         /// Rule for the opening of contact.
         opening: Opening,
+        /// Law of the edges of contact.
+        law: FrontLaw,
     },
     /// Morse's law of a finite range.
     Range {
@@ -333,7 +335,13 @@ impl Attraction {
     /// Rules for formation and opening of contact in the JKR limit; nothing with a range.
     #[must_use]
     pub fn bonded(self) -> Option<(Nucleation, Opening)> {
-        if let Self::Bonded { nucleation, opening } = self { Some((nucleation, opening)) } else { None }
+        if let Self::Bonded { nucleation, opening, .. } = self { Some((nucleation, opening)) } else { None }
+    }
+
+    /// Law of the edges of contact in the JKR limit; nothing with a range.
+    #[must_use]
+    pub fn law(self) -> Option<FrontLaw> {
+        if let Self::Bonded { law, .. } = self { Some(law) } else { None }
     }
 }
 
@@ -438,7 +446,7 @@ impl Default for ElementOptions {
 
 impl Default for Attraction {
     fn default() -> Self {
-        Self::Bonded { nucleation: Nucleation::Touch, opening: Opening::Strength }
+        Self::Bonded { nucleation: Nucleation::Touch, opening: Opening::Strength, law: FrontLaw::Plain }
     }
 }
 

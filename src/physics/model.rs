@@ -345,6 +345,16 @@ choice! {
     }
 }
 choice! {
+    /// Law of the bonded attraction of boundary elements.
+    FrontLaw {
+        /// Law of a straight front, with contact on a spring.
+        Plain = "plain",
+        /// With smaller errors of first order in the grid spacing: hard contact, line tension of fronts,
+        /// heights divided by the spectrum of the law.
+        Corrected = "corrected",
+    }
+}
+choice! {
     /// Elastic interaction between contact spots.
     Interaction {
         /// Displacement field of a JKR contact spot outside its contact (Eqs 6 and 7).

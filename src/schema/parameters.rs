@@ -6,7 +6,7 @@ use super::{Column, real, text};
 use crate::model::{Choice, GeneratedSurface};
 
 /// Number of parameters.
-const COUNT: usize = 44;
+const COUNT: usize = 45;
 
 /// Parameters that define a case, in the order of their columns.
 pub static PARAMETERS: [Parameter; COUNT] = LIST;
@@ -345,6 +345,18 @@ const LIST: [Parameter; COUNT] = [
         ["opening", "opening"],
         17,
         |case| case.params.elements()?.attraction.bonded().map(|bonded| word(bonded.1)),
+    )
+    .of_method(),
+    parameter(
+        text(
+            "front_law",
+            "Law of the edges of contact of boundary elements: \"plain\" or \"corrected\"; null for asperities \
+             and with a range",
+        )
+        .or_null(),
+        ["law", "law"],
+        43,
+        |case| case.params.elements()?.attraction.law().map(word),
     )
     .of_method(),
     parameter(

@@ -3,9 +3,9 @@
 use super::Value;
 use super::keys::{KEYS, Key, OPTIONAL_TABLES, OTHER_LOADS, TABLES};
 use crate::model::{
-    AsperityOptions, Attraction, AttractionKind, CaseParams, Control, ElementOptions, GeneratedSurface,
-    LoadingPath, Machine, Material, MeasuredSurface, Method, MethodOptions, Nucleation, Opening, Probe, Slip,
-    Substrate, SurfaceSource,
+    AsperityOptions, Attraction, AttractionKind, CaseParams, Control, ElementOptions, FrontLaw,
+    GeneratedSurface, LoadingPath, Machine, Material, MeasuredSurface, Method, MethodOptions, Nucleation,
+    Opening, Probe, Slip, Substrate, SurfaceSource,
 };
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -35,6 +35,8 @@ pub struct Values {
     pub nucleation: Nucleation,
     /// `boundary_elements.opening`.
     pub opening: Opening,
+    /// `boundary_elements.law`.
+    pub law: FrontLaw,
     /// `[cycle]` but the step of the asperity model and the loads in other units.
     pub cycle: LoadingPath,
     /// `probe.radius_m`.
@@ -69,6 +71,7 @@ impl Default for Values {
             range_m: None,
             nucleation: Nucleation::Touch,
             opening: Opening::Strength,
+            law: FrontLaw::Plain,
             cycle: LoadingPath::default(),
             radius_m: None,
             thickness_m: None,
@@ -159,7 +162,7 @@ impl Values {
     fn attraction(&self) -> Attraction {
         match self.attraction {
             AttractionKind::Bonded => {
-                Attraction::Bonded { nucleation: self.nucleation, opening: self.opening }
+                Attraction::Bonded { nucleation: self.nucleation, opening: self.opening, law: self.law }
             }
             AttractionKind::Range => Attraction::Range { range_m: self.range_m },
         }
@@ -209,8 +212,8 @@ impl From<&CaseParams> for Values {
         }
         values.attraction = values.elements.attraction.kind();
         match values.elements.attraction {
-            Attraction::Bonded { nucleation, opening } => {
-                (values.nucleation, values.opening) = (nucleation, opening);
+            Attraction::Bonded { nucleation, opening, law } => {
+                (values.nucleation, values.opening, values.law) = (nucleation, opening, law);
             }
             Attraction::Range { range_m } => values.range_m = range_m,
         }

@@ -8,7 +8,7 @@ use std::path::Path;
 /// holds.
 ///
 /// `model`, `constants`, `error`, `event_kind`, `loop_position` and `memory` are free for all.
-const PHYSICS: [(&str, &[&str]); 22] = [
+const PHYSICS: [(&str, &[&str]); 23] = [
     ("math", &[]),
     ("jkr", &[]),
     ("surface", &[]),
@@ -28,12 +28,13 @@ const PHYSICS: [(&str, &[&str]); 22] = [
     ("elements::numerics", &[]),
     ("elements::grid", &[]),
     ("elements::law", &[]),
-    ("elements::problem", &["elements::numerics", "elements::grid", "elements::law"]),
-    ("elements::equilibrium", &["elements::numerics", "elements::grid", "elements::law", "elements::problem"]),
+    ("elements::line", &["elements::grid", "elements::law"]),
+    ("elements::problem", &["elements::numerics", "elements::grid", "elements::law", "elements::line"]),
+    ("elements::equilibrium", &["elements::numerics", "elements::grid", "elements::law", "elements::line", "elements::problem"]),
     ("elements::events", &["elements::grid", "elements::problem"]),
     ("elements::path", &["cycle", "elements::grid", "elements::problem", "elements::equilibrium", "elements::events"]),
     ("elements::units", &[]),
-    ("elements::options", &["elements::numerics"]),
+    ("elements::options", &["elements::numerics", "elements::law"]),
 ];
 
 /// Modules of `src/physics` that every other one may import.

@@ -11,6 +11,7 @@ pub mod events;
 mod free;
 pub mod grid;
 pub mod law;
+pub(crate) mod line;
 pub mod numerics;
 mod options;
 pub mod path;

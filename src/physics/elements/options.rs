@@ -1,5 +1,6 @@
 //! Options of boundary elements.
 
+use super::law::Front;
 use super::numerics::Numerics;
 use crate::model::{KeptContacts, Machine, Probe, Substrate};
 
@@ -32,6 +33,8 @@ pub struct Options {
     pub points: usize,
     /// Attraction.
     pub attraction: Attraction,
+    /// Corrections of the law of bonded attraction.
+    pub law: Front,
     /// Sphere that carries the roughness; none for a flat surface. Its apex is in the middle of the square,
     /// which is then periodic.
     pub probe: Option<Probe>,
@@ -51,11 +54,24 @@ pub struct Options {
     pub numerics: Numerics,
 }
 
+impl Options {
+    /// True with bonded attraction, which has the law of the band-limited crack.
+    pub(super) fn is_bonded(&self) -> bool {
+        matches!(self.attraction, Attraction::Bonded { .. })
+    }
+
+    /// True if heights are divided by the spectrum of the kernel of the law.
+    pub(super) fn emphasises(&self) -> bool {
+        self.is_bonded() && self.law.is_emphasised
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {
             points: 0,
             attraction: Attraction::Bonded { nucleation_m: 0.0, strength: f64::INFINITY },
+            law: Front::PLAIN,
             probe: None,
             substrate: None,
             machine: Machine::default(),

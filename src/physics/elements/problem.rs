@@ -15,6 +15,7 @@ use super::grid::medium::Medium;
 use super::grid::sums::{grain, sums};
 pub use super::law::Bonding;
 use super::law::{Bond, Law};
+use super::line::{LineBond, line_bond};
 use super::numerics::Numerics;
 use crate::PhysicsError;
 use crate::memory::filled;
@@ -126,8 +127,8 @@ impl Problem {
             self.half_space
         } else {
             let machine = self.machine_compliance * self.half_space.points() as f64;
-            let Medium { layer, series_compliance } = *self.half_space.medium();
-            let medium = Medium { layer, series_compliance: series_compliance - machine };
+            let whole = *self.half_space.medium();
+            let medium = Medium { series_compliance: whole.series_compliance - machine, ..whole };
             let whole = HalfSpace::of(&medium, self.half_space.rows(), self.half_space.columns())?;
             if self.half_space.is_mirrored() { whole.with_images() } else { whole }
         };
@@ -181,6 +182,30 @@ impl Problem {
         state.displacement[point] - state.mean_penetration - self.heights[point]
     }
 
+    /// Energy and tension of the line at a point.
+    fn line(&self, state: &State, point: usize) -> LineBond {
+        if !self.law.has_line() || state.bonds[point] == Bonding::Free {
+            return LineBond::default();
+        }
+        let profile = |k: usize| self.law.profile(state.bonds[k], self.gap(state, k));
+        line_bond(&self.half_space, point, self.law.line_factor(), profile)
+    }
+
+    /// Tension of a point in equilibrium \[E*\].
+    #[must_use]
+    pub fn tension(&self, state: &State, point: usize) -> f64 {
+        self.bond(state.bonds[point], self.gap(state, point)).tension + self.line(state, point).tension
+    }
+
+    /// Distance of the surfaces at a point \[dx\]: the gap of the law, less the displacement of a wall that
+    /// is a part of the operator.
+    #[must_use]
+    pub fn true_gap(&self, state: &State, point: usize) -> f64 {
+        let wall = self.half_space.medium().wall_compliance;
+        let gap = self.gap(state, point);
+        if wall == 0.0 { gap } else { gap - wall * self.tension(state, point) }
+    }
+
     /// Load, energy and area of a state.
     #[must_use]
     pub fn totals(&self, state: &State) -> Totals {
@@ -189,9 +214,10 @@ impl Problem {
             for k in range {
                 let gap = self.gap(state, k);
                 let bond = self.bond(state.bonds[k], gap);
-                sum[0] -= bond.tension;
+                let line = self.line(state, k);
+                sum[0] -= bond.tension + line.tension;
                 sum[1] += state.displacement[k] * state.pressure[k];
-                sum[2] += bond.energy;
+                sum[2] += bond.energy + line.energy;
                 sum[3] += f64::from(u8::from(self.touches(state.bonds[k], gap)));
             }
         });

@@ -5,11 +5,11 @@
 
 use super::{BONDED, cycle, problem, sums};
 use hysteron::physics::elements::law::Law;
-use hysteron::physics::elements::problem::Attraction;
+use hysteron::physics::elements::problem::{Attraction, Problem};
 use std::f64::consts::{PI, TAU};
 
 /// Height of the sinusoid over its wavelength.
-const SLOPE: f64 = 1.0 / 50.0;
+pub(super) const SLOPE: f64 = 1.0 / 50.0;
 
 /// P and ḡ at the contact width `a`.
 fn exact(alpha: f64, a: f64) -> (f64, f64) {
@@ -40,10 +40,15 @@ pub(super) fn computed(alpha: f64, n: usize, attraction: Attraction, range: Opti
     let h = SLOPE * n as f64;
     let work = (alpha * PI / 2.0_f64.sqrt() * SLOPE).powi(2) * n as f64;
     let law = range.map_or_else(|| Law::crack(work), |range| Law::morse(work, range * work.sqrt()));
-    let problem = problem(1, n, |_, k| h * (TAU * k as f64 / n as f64).cos(), law, attraction);
+    loop_over_exact(alpha, &problem(1, n, |_, k| h * (TAU * k as f64 / n as f64).cos(), law, attraction))
+}
+
+/// The same of a problem.
+pub(super) fn loop_over_exact(alpha: f64, problem: &Problem) -> [f64; 4] {
+    let h = SLOPE * problem.heights.len() as f64;
     let unit = PI * h;
     let (loss, least, gap) = reference(alpha);
-    let cycle = cycle(&problem, 0.05 * unit, 0.0125 * (gap - 1.0) * h, 1e-3);
+    let cycle = cycle(problem, 0.05 * unit, 0.0125 * (gap - 1.0) * h, 1e-3);
     assert!(cycle.steps.iter().all(|s| s.converged));
     let (loop_area, events, tension) = sums(&cycle);
     let off = 1.0 - cycle.steps.last().unwrap().mean_penetration / h;

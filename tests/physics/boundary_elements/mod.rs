@@ -1,5 +1,6 @@
 //! Adhesive boundary elements: operators, exact solutions, energy balance and the independence of the path from grid, step and threads.
 
+mod corrected;
 mod front;
 pub mod golden;
 mod grid_error;

@@ -199,7 +199,7 @@ fn val_layer() {
         let layer = Layer { thickness, poisson_ratio };
         for (q, share) in [0.25, 0.5, 1.0, 2.0].into_iter().zip(shares) {
             assert!((layer.share(q * thickness) - share).abs() < 1e-9, "ν = {poisson_ratio}, q = {q}: {}", layer.share(q * thickness));
-            let medium = Medium { layer: Some(layer), series_compliance: 0.0 };
+            let medium = Medium { layer: Some(layer), series_compliance: 0.0, wall_compliance: 0.0 };
             assert!((medium.stiffness(q) - 0.5 * q / share).abs() < 1e-6 * q / share);
         }
         assert!((layer.compression() * stiffness - 1.0).abs() < 1e-8);
@@ -211,7 +211,7 @@ fn val_layer() {
     assert_eq!(incompressible.compression(), 0.0);
     // A deep layer is a half-space, without a step where the exponentials end.
     assert!((incompressible.share(21.99) - 1.0).abs() < 1e-12 && incompressible.share(1e3) == 1.0);
-    let deep = Medium { layer: Some(Layer { thickness: 1e6, poisson_ratio: 0.3 }), series_compliance: 2.0 };
+    let deep = Medium { layer: Some(Layer { thickness: 1e6, poisson_ratio: 0.3 }), series_compliance: 2.0, wall_compliance: 0.0 };
     assert_eq!(deep.stiffness(0.1), 0.05);
     assert_eq!(deep.mean_compliance(), 2.0 + 1e6 * 0.4 / 0.49);
 }

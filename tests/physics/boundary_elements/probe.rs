@@ -1,6 +1,7 @@
 //! A spherical probe in a periodic cell, on a half-space, on a compliant machine and under control of the load.
 
 use hysteron::physics::cycle::{Branch, Cycle, Method};
+use hysteron::physics::elements::law::Front;
 use hysteron::physics::elements::path::cycle::Turning;
 use hysteron::physics::elements::{Elements, Options};
 use hysteron::physics::model::{Control, FarField, Machine, Material, Probe, Substrate};
@@ -8,27 +9,27 @@ use hysteron::physics::surface::HeightMap;
 use ndarray::Array2;
 use std::f64::consts::PI;
 
-const MATERIAL: Material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.05, interaction_range_m: 1e-9 };
-const RADIUS: f64 = 50e-6;
-const HALF_SPACE: Machine = Machine { compliance_m_n: 0.0, far_field: FarField::HalfSpace, control: Control::Displacement };
+pub(super) const MATERIAL: Material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.05, interaction_range_m: 1e-9 };
+pub(super) const RADIUS: f64 = 50e-6;
+pub(super) const HALF_SPACE: Machine = Machine { compliance_m_n: 0.0, far_field: FarField::HalfSpace, control: Control::Displacement };
 
 /// JKR radius of contact at zero penetration \[m\]: `(2πΔγR²/E*)^⅓`.
-fn a0() -> f64 {
+pub(super) fn a0() -> f64 {
     (2.0 * PI * MATERIAL.work_of_adhesion_j_m2 * RADIUS * RADIUS / MATERIAL.contact_modulus_pa).cbrt()
 }
 
 /// Results of a loop.
 #[derive(Debug, Clone, Copy, Default)]
-struct Loop {
-    pull_off_n: f64,
-    loss_j: f64,
+pub(super) struct Loop {
+    pub(super) pull_off_n: f64,
+    pub(super) loss_j: f64,
     jumps: [usize; 2],
 }
 
 /// Exact branch of a rigid surface of revolution on a half-space in the JKR limit, with a simply connected contact of radius a. For the profile
 /// `r²/2R + A (1 − cos kr)`: `g = a²/R + A k a (π/2) H₀(ka)`, `δ = g − sqrt(2πaΔγ/E*)`, `F = 2E*(aδ − ∫g da)`, with Struve's function
 /// `H₀(x) = (2/π) ∫ sin(x sin θ) dθ` over a quarter turn (Guduru, J. Mech. Phys. Solids 55, 445, 2007). Pairs (δ, F) over rising a.
-fn exact(amplitude: f64, wavelength: f64, widest: f64) -> Vec<[f64; 2]> {
+pub(super) fn exact(amplitude: f64, wavelength: f64, widest: f64) -> Vec<[f64; 2]> {
     let (modulus, work) = (MATERIAL.contact_modulus_pa, MATERIAL.work_of_adhesion_j_m2);
     let k = 2.0 * PI / wavelength;
     let struve = |x: f64| (0..400).map(|i| (x * ((f64::from(i) + 0.5) / 400.0 * PI / 2.0).sin()).sin()).sum::<f64>() / 400.0;
@@ -47,7 +48,7 @@ fn exact(amplitude: f64, wavelength: f64, widest: f64) -> Vec<[f64; 2]> {
 
 /// The loop along a branch to a load, on a machine of compliance c \[m/N\] that is moved by `D = δ + cF` from the touch at δ = 0: states with
 /// the largest D so far while loading, with the smallest so far while unloading, and jumps between them, at which the work is done by the machine.
-fn loop_of(branch: &[[f64; 2]], max_load: f64, compliance: f64) -> Loop {
+pub(super) fn loop_of(branch: &[[f64; 2]], max_load: f64, compliance: f64) -> Loop {
     loop_until(branch, |[_, load]| load >= max_load, compliance)
 }
 
@@ -79,7 +80,12 @@ fn loop_until(branch: &[[f64; 2]], ends: impl Fn([f64; 2]) -> bool, compliance: 
 }
 
 /// The loop of a probe with concentric waves `−A (1 − cos kr)` in a square of `sides` a0, with `per` points per a0.
-fn run(sides: f64, per: f64, [amplitude, wavelength]: [f64; 2], load_n: f64, machine: Machine) -> Cycle<Turning> {
+fn run(sides: f64, per: f64, waves: [f64; 2], load_n: f64, machine: Machine) -> Cycle<Turning> {
+    run_by(Front::PLAIN, sides, per, waves, load_n, machine)
+}
+
+/// As [`run`], with corrections of the law.
+pub(super) fn run_by(law: Front, sides: f64, per: f64, [amplitude, wavelength]: [f64; 2], load_n: f64, machine: Machine) -> Cycle<Turning> {
     let points = 2 * (0.5 * sides * per).round() as usize;
     let length_m = sides * a0();
     let heights = Array2::from_shape_fn((points, points), |(row, column)| {
@@ -89,13 +95,13 @@ fn run(sides: f64, per: f64, [amplitude, wavelength]: [f64; 2], load_n: f64, mac
         -amplitude * (1.0 - (2.0 * PI / wavelength * r).cos())
     });
     let map = HeightMap { heights_m: heights.view(), length_m, is_periodic: true, shortest_wavelength_m: wavelength, rms_height_m: 1e-9 };
-    let options = Options { points, probe: Some(Probe { radius_m: RADIUS }), machine, ..Options::default() };
+    let options = Options { points, probe: Some(Probe { radius_m: RADIUS }), machine, law, ..Options::default() };
     let unit = MATERIAL.contact_modulus_pa * length_m * length_m;
     Elements::new(&map, &MATERIAL, &[load_n / unit], &options).unwrap().run().unwrap()
 }
 
 /// Pull-off force, dissipated energy, and jumps of more than 1 % of the maximum tension.
-fn results(cycle: &Cycle<Turning>) -> Loop {
+pub(super) fn results(cycle: &Cycle<Turning>) -> Loop {
     let pull_off_n = cycle.steps.iter().map(|step| -step.least_load_n).fold(0.0, f64::max);
     let loss_j = cycle.steps[cycle.turning[0].0].work_j + cycle.steps.last().unwrap().work_j;
     let events: f64 = cycle.events.iter().map(|event| event.energy_lost_j).sum();
@@ -108,19 +114,19 @@ fn results(cycle: &Cycle<Turning>) -> Loop {
     Loop { pull_off_n, loss_j, jumps }
 }
 
-fn load() -> f64 {
+pub(super) fn load() -> f64 {
     2.0 * PI * MATERIAL.work_of_adhesion_j_m2 * RADIUS
 }
 
 /// Without waves.
-const SMOOTH: [f64; 2] = [0.0, 1e-6];
+pub(super) const SMOOTH: [f64; 2] = [0.0, 1e-6];
 
-fn smooth() -> Vec<[f64; 2]> {
+pub(super) fn smooth() -> Vec<[f64; 2]> {
     exact(0.0, 1.0, 4.0 * a0())
 }
 
 /// The amplitude of waves of half of a0 for `α = sqrt(2Δγλ/(π²E*A²))`, and their length.
-fn waves(alpha: f64) -> [f64; 2] {
+pub(super) fn waves(alpha: f64) -> [f64; 2] {
     let wavelength = 0.5 * a0();
     [(2.0 * MATERIAL.work_of_adhesion_j_m2 * wavelength / (PI * PI * MATERIAL.contact_modulus_pa)).sqrt() / alpha, wavelength]
 }

@@ -2,6 +2,8 @@
 
 use super::{BONDED, problem, settle};
 use hysteron::physics::elements::equilibrium::minimise::{Accuracy, Minimiser};
+use hysteron::physics::elements::grid::half_space::HalfSpace;
+use hysteron::physics::elements::grid::medium::Medium;
 use hysteron::physics::elements::law::Law;
 use hysteron::physics::elements::problem::{Problem, State};
 use std::f64::consts::{PI, TAU};
@@ -16,9 +18,17 @@ fn advance(problem: &Problem, minimiser: &mut Minimiser, state: &mut State, appr
 
 /// Energy lost over a sub-cycle on the stable branch, over Δγ and the area that the two fronts sweep.
 fn trapped(n: usize, law: impl Fn(f64) -> Law) -> f64 {
+    trapped_by(n, law, 0.0)
+}
+
+/// As [`trapped`], with the compliance of a wall that is a part of the operator.
+pub(super) fn trapped_by(n: usize, law: impl Fn(f64) -> Law, wall_compliance: f64) -> f64 {
     let h = n as f64 / 50.0;
     let work = (ALPHA * PI / 2.0_f64.sqrt() / 50.0).powi(2) * n as f64;
-    let problem = problem(1, n, |_, k| h * (TAU * k as f64 / n as f64).cos(), law(work), BONDED);
+    let mut problem = problem(1, n, |_, k| h * (TAU * k as f64 / n as f64).cos(), law(work), BONDED);
+    if wall_compliance > 0.0 {
+        problem.half_space = HalfSpace::of(&Medium { wall_compliance, ..Medium::default() }, 1, n).unwrap();
+    }
     let mut minimiser = Minimiser::new(&problem).unwrap();
     let mut state = problem.apart(0.0).unwrap();
     // To the stable branch, then to and fro by 0.2 h, once before the measured cycle.

@@ -91,6 +91,6 @@ impl SinglePrecisionIncrement {
 /// Pressure and tension of some points, which near equilibrium is their mean over the grid.
 pub(crate) fn level(problem: &Problem, state: &State) -> f64 {
     let points = state.bonds.len().min(PANEL);
-    let residual = |k: usize| state.pressure[k] + problem.bond(state.bonds[k], problem.gap(state, k)).tension;
+    let residual = |k: usize| state.pressure[k] + problem.tension(state, k);
     (0..points).map(residual).sum::<f64>() / points as f64
 }

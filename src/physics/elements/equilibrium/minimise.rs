@@ -16,6 +16,7 @@
 //! replaced by that of the displacement before a state counts as an equilibrium.
 
 use super::increment::{SinglePrecisionIncrement, level};
+use super::line::{Gaps, add_line};
 use super::pairs::{Gradient, Pairs};
 use super::passes::{Found, Points, Stride, advance};
 use super::preconditioner::Preconditioner;
@@ -76,7 +77,9 @@ pub struct Minimiser {
     pub(crate) slopes: Vec<f32>,
     pub(crate) direction: Vec<f32>,
     pub(crate) response: Vec<f32>,
-    increment: SinglePrecisionIncrement,
+    pub(super) increment: SinglePrecisionIncrement,
+    /// Rates of the step φ of [lines](super::line); empty without them.
+    pub(super) rates: Vec<f32>,
     pub(crate) pairs: Pairs,
     /// Preconditioner.
     pub preconditioner: Preconditioner,
@@ -204,6 +207,7 @@ impl Minimiser {
             direction: field()?,
             response: field()?,
             increment: SinglePrecisionIncrement::new(problem)?,
+            rates: filled(if problem.law.has_line() { points } else { 0 }, 0.0)?,
             pairs: Pairs::new(points)?,
             preconditioner: Preconditioner { split: true },
         })
@@ -424,6 +428,12 @@ impl Minimiser {
         };
         let mut all = Found::default();
         parts.iter().for_each(|part| all.add(part));
+        if problem.law.has_line() {
+            let SinglePrecisionIncrement { gap, displacement, .. } = &self.increment;
+            let from = Gaps { gap, displacement, direction: &self.direction, bonds: &state.bonds };
+            let bent = add_line(problem, from, &mut self.gradient.values, &mut self.slopes, stride);
+            all = Found { beyond: all.beyond + bent.beyond, curvature: all.curvature, ..bent };
+        }
         let (points, [sum, square]) = (self.slopes.len() as f64, all.gradient);
         let lowered = self.mean(problem, sum);
         self.gradient.mean = lowered;

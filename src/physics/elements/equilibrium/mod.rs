@@ -3,6 +3,8 @@
 
 mod descent;
 mod increment;
+mod line;
+mod line_slopes;
 pub mod minimise;
 pub(crate) mod newton;
 mod pairs;

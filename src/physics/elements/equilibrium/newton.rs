@@ -1,7 +1,7 @@
 //! Newton's method with truncated conjugate gradients (Steihaug, SIAM J. Numer. Anal. 20:626, 1983): the
 //! second way to an equilibrium, where L-BFGS does not end.
 //!
-//! The model of the energy is `g·p + ½ p·(K + V'')p`. Its minimum is approached by conjugate gradients with
+//! The model of the energy is `g·p + ½ p·(K + V'')p`, with `V''` for all second derivatives of the law. Its minimum is approached by conjugate gradients with
 //! the split preconditioner, until a direction has a negative curvature or the step would exceed the reach of
 //! the law; such a step ends at that reach.
 
@@ -69,9 +69,15 @@ impl Minimiser {
             if outcome.converged || outcome.iterations >= accuracy.iterations {
                 return Ok(outcome);
             }
+            self.linearise_line(problem, state);
             outcome.iterations += self.conjugate_gradients(problem, &mut found);
             std::mem::swap(&mut self.direction, &mut found.step);
             std::mem::swap(&mut self.response, &mut found.response);
+            if problem.law.has_line() {
+                // The response of the conjugate gradients is not elastic alone.
+                let Self { direction, response, single, .. } = self;
+                problem.half_space.apply(Operator::Stiffness, direction, response, single);
+            }
             let descent = Descent {
                 mean: 0.0,
                 slope: dot(&self.direction, &self.gradient.values),
@@ -95,17 +101,26 @@ impl Minimiser {
         let mut found = Solution { step: filled(problem.half_space.points(), 0.0)?, response: Vec::new() };
         self.evaluate_at(problem, state);
         let mut inner = self.take_scratch();
+        self.linearise_line(problem, state);
         inner.residual.copy_from_slice(&self.slopes);
+        if problem.law.has_line() {
+            inner.search.fill(1.0);
+            self.add_line_response(problem, &inner.search, &mut inner.residual);
+        }
         problem.half_space.fix_mean(&mut inner.residual);
         let residual =
             problem.numerics.equilibrium.rate_residual * dot(&inner.residual, &inner.residual).sqrt();
         self.solve(problem, &mut inner, &mut found, Limits { step: f64::INFINITY, residual });
+        // The second derivatives of the energy of the law times 1 − rate.
+        let Inner { search, stiff, .. } = &mut inner;
+        (&mut *search, &mut *stiff, &found.step, &self.slopes)
+            .into_par_iter()
+            .with_min_len(grain(1))
+            .for_each(|(left, to, rate, slope)| (*left, *to) = (1.0 - rate, slope * (1.0 - rate)));
+        self.add_line_response(problem, search, stiff);
+        let [stiffness] =
+            total(inner.stiff.par_chunks(PANEL).map(|stiff| panel_sums([stiff], |[stiff]| [stiff])));
         self.return_scratch(inner);
-        let [stiffness] = total(
-            (self.slopes.par_chunks(PANEL), found.step.par_chunks(PANEL))
-                .into_par_iter()
-                .map(|(slopes, rate)| panel_sums([slopes, rate], |[slope, rate]| [slope * (1.0 - rate)])),
-        );
         Ok(Rate { stiffness, displacement: found.step })
     }
 
@@ -147,6 +162,7 @@ impl Minimiser {
         let most = problem.numerics.equilibrium.inner_iterations;
         for iteration in 1..=most {
             problem.half_space.apply(Operator::Stiffness, &inner.search, &mut inner.stiff, &mut self.single);
+            self.add_line_response(problem, &inner.search, &mut inner.stiff);
             let [curvature] = total(
                 (
                     inner.stiff.par_chunks(PANEL),

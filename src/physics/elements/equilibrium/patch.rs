@@ -17,6 +17,7 @@ use super::minimise::{Accuracy, LocalRelaxation, Minimiser, WorkingState};
 use super::places::{Place, Region, SMALLEST_SIDE, places};
 use crate::PhysicsError;
 use crate::elements::grid::half_space::HalfSpace;
+use crate::elements::line::line_bond;
 use crate::elements::problem::{Attraction, Bonding, Problem, State};
 use crate::memory::filled;
 use rayon::prelude::*;
@@ -245,6 +246,32 @@ impl Patch {
             self.state.bonds[k] = on.state.bonds[from];
         }
         self.state.mean_penetration = on.state.mean_penetration;
+        self.hold_line_at_border(on, place);
+    }
+
+    /// Adds what the tension of the line at the border of the patch is with the points beyond it, as a pressure.
+    fn hold_line_at_border(&mut self, on: &WorkingState<'_>, place: Place) {
+        let (law, side) = (&on.problem.law, self.side());
+        if !law.has_line() {
+            return;
+        }
+        let of_grid = |at: usize| {
+            let gap = on.displacement(at) - on.state.mean_penetration - on.problem.heights[at];
+            law.profile(on.state.bonds[at], gap)
+        };
+        let of_patch = |k: usize| law.profile(self.state.bonds[k], self.problem.gap(&self.state, k));
+        let is_border = |k: usize| [k / side, k % side].iter().any(|at| *at == 0 || *at == side - 1);
+        let (factor, grid) = (law.line_factor(), &on.problem.half_space);
+        let held: Vec<(usize, f64)> = self
+            .points(grid, place)
+            .enumerate()
+            .filter(|(k, _)| is_border(*k))
+            .map(|(k, at)| {
+                let whole = line_bond(grid, at, factor, of_grid).tension;
+                (k, whole - line_bond(&self.problem.half_space, k, factor, of_patch).tension)
+            })
+            .collect();
+        held.into_iter().for_each(|(k, tension)| self.state.pressure[k] += tension);
     }
 
     /// Takes over what has happened on a smaller patch with the same middle.

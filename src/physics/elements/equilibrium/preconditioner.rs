@@ -8,6 +8,9 @@ use rayon::prelude::*;
 /// Points in contact, of a slope of the law above `stiff`, are nearly fixed by the wall; at open points the
 /// law softens near a front of contact.
 const SPLIT: Split = Split { stiff: 0.3, added: 0.7, softening: 1.0 };
+/// The same with hard contact, whose operator is stiffer at short wavelengths. With the values of [`SPLIT`] a
+/// loop takes a quarter more transforms.
+const HARD: Split = Split { stiff: 1.0, added: 0.7, softening: 0.2 };
 /// All points as open ones.
 const WHOLE: Split = Split { stiff: f32::INFINITY, added: 0.0, softening: 0.0 };
 
@@ -28,9 +31,12 @@ impl Preconditioner {
         right: &Right<'_>,
         slopes: &[f32],
     ) -> [f64; PAIRS] {
-        let (split, operator) =
-            if self.split { (SPLIT, Operator::Compliance) } else { (WHOLE, Operator::Shifted) };
         let half_space = &problem.half_space;
+        let is_hard = half_space.medium().wall_compliance > 0.0;
+        let (split, operator) = match self.split {
+            true => (if is_hard { HARD } else { SPLIT }, Operator::Compliance),
+            false => (WHOLE, Operator::Shifted),
+        };
         let columns = half_space.columns();
         let rows = || right.rows(columns).zip(slopes.par_chunks(columns));
         half_space.forward(waves, rows(), |(right, slopes), to| open_part(to, &right, slopes, split));

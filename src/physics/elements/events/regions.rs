@@ -129,7 +129,7 @@ pub fn regions(problem: &Problem, state: &State, labels: &Labels, summits: &[usi
         let region = &mut all[*label as usize - 1];
         let (row, column) = (k / columns, k % columns);
         region.points += 1;
-        region.load -= problem.bond(state.bonds[k], problem.gap(state, k)).tension;
+        region.load -= problem.tension(state, k);
         let outside = |down: i64, right: i64| labels.of[beside(k, down, right)] != *label;
         let count = |places: [(i64, i64); 4]| {
             places.into_iter().filter(|(down, right)| outside(*down, *right)).count() as f64

@@ -151,25 +151,51 @@ impl HalfSpace {
     /// Not enough memory.
     pub fn of(medium: &Medium, rows: usize, columns: usize) -> Result<Self, PhysicsError> {
         let mean_compliance = medium.mean_compliance();
+        let stiffness = |q: f64| match q {
+            0.0 if mean_compliance > 0.0 => mean_compliance.recip(),
+            0.0 => 0.0,
+            q => medium.stiffness(q),
+        };
+        Self::multiplying(medium, rows, columns, stiffness)
+    }
+
+    /// A grid on which [`Operator::Stiffness`] multiplies by a factor of the wavenumber.
+    fn multiplying(
+        medium: &Medium,
+        rows: usize,
+        columns: usize,
+        factor: impl Fn(f64) -> f64 + Sync,
+    ) -> Result<Self, PhysicsError> {
         let of = |row: usize, column: usize| {
             let qx = TAU * row.min(rows - row) as f64 / rows as f64;
             let qy = TAU * column as f64 / columns as f64;
-            match qx.hypot(qy) {
-                0.0 if mean_compliance > 0.0 => mean_compliance.recip(),
-                0.0 => 0.0,
-                q => medium.stiffness(q),
-            }
+            factor(qx.hypot(qy))
         };
         Ok(Self {
             rows,
             columns,
             padded: (rows, columns),
             is_mirrored: false,
-            fixes_mean: mean_compliance == 0.0,
+            fixes_mean: medium.mean_compliance() == 0.0,
             medium: *medium,
             double: Plans::new(rows, columns, of)?,
             single: Plans::new(rows, columns, of)?,
         })
+    }
+
+    /// Multiplies the Fourier transform of a periodic field by a factor of the wavenumber \[1/dx\].
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub(crate) fn filter(
+        field: &[f64],
+        columns: usize,
+        factor: impl Fn(f64) -> f64 + Sync,
+    ) -> Result<Vec<f64>, PhysicsError> {
+        let grid = Self::multiplying(&Medium::default(), field.len() / columns, columns, factor)?;
+        let mut filtered = filled(field.len(), 0.0)?;
+        grid.apply(Operator::Stiffness, field, &mut filtered, &mut grid.waves::<f64>()?);
+        Ok(filtered)
     }
 
     /// The grid of a surface and its three mirror images: the surface is the first half of the rows and

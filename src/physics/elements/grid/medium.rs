@@ -29,7 +29,13 @@ pub struct Medium {
     pub layer: Option<Layer>,
     /// Mean displacement per mean pressure in series with it \[dx/E*\], at least 0.
     pub series_compliance: f64,
+    /// Compliance of a wall that is a part of the law \[dx/E*\]: subtracted at all wavenumbers but 0.
+    pub wall_compliance: f64,
 }
+
+/// Fraction of the compliance that is left at least where that of a wall is subtracted: reached by thin layers
+/// at wavelengths beyond their thickness.
+const LEFT_COMPLIANCE: f64 = 0.4;
 
 /// Product of wavenumber and thickness from which on a layer is a half-space: `S − 1` is of the order
 /// `s² e^(−2s)`, below 1e-15.
@@ -75,7 +81,11 @@ impl Medium {
     #[must_use]
     pub fn stiffness(&self, q: f64) -> f64 {
         let share = self.layer.map_or(1.0, |layer| layer.share(q * layer.thickness));
-        0.5 * q / share
+        if self.wall_compliance == 0.0 {
+            return 0.5 * q / share;
+        }
+        let compliance = 2.0 * share / q;
+        (compliance - self.wall_compliance).max(LEFT_COMPLIANCE * compliance).recip()
     }
 
     /// Mean displacement per mean pressure \[dx/E*\]; 0 if the mean displacement is fixed.

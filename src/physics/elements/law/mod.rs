@@ -21,25 +21,23 @@
 //! `V(g) = Δγ (e^(−2g/ρ) − 2e^(−g/ρ))`: attraction of a range ρ, for finite Tabor parameters and comparison
 //! with other programs.
 
+mod crack;
+mod front;
 pub(crate) mod morse;
 
+pub use crack::{Crack, Profile};
+pub use front::Front;
 use morse::Smooth;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
 
 /// Width of the Gaussian kernel, in grid spacings.
 pub(super) const KERNEL_WIDTH: f64 = 0.6;
 /// Stiffness of the spring at small and negative gaps, in E*/dx.
 pub(super) const WALL_STIFFNESS: f64 = 4.0;
-/// Spacing of the table, in ℓ.
-const TABLE_SPACING: f64 = 1.0 / NODES_PER_UNIT;
-const NODES_PER_UNIT: f64 = 100.0;
 /// Overlap in ranges beyond which the repulsion of Morse's law is linear.
 pub(super) const MAX_OVERLAP: f64 = 6.0;
 /// Gap in ranges beyond which Morse's law is not evaluated: its tension is 1e-12 of the maximum.
 pub(super) const NEGLIGIBLE_GAP: f64 = 30.0;
-/// Tension at which the table ends, in E*ℓ/dx.
-const END_TENSION: f64 = 1e-7;
 
 /// A law in the pieces that a pass over many points distinguishes, for a free, a bonded and a sealed point
 /// \[dx\].
@@ -88,151 +86,11 @@ pub enum Law {
     Morse(Morse),
 }
 
-/// Law of the band-limited crack for one work of adhesion.
-#[derive(Debug, Clone)]
-pub struct Crack {
-    /// Unit of the gap, ℓ/dx, and dx/ℓ.
-    unit: f64,
-    inverse_unit: f64,
-    /// Gap from which on the table is valid, in ℓ.
-    onset: f64,
-    /// Gap of the maximum tension, in ℓ.
-    peak: f64,
-    /// Tension, its slope and the energy at the nodes `onset + k TABLE_SPACING`, dimensionless.
-    nodes: Vec<[f64; 3]>,
-}
-
 /// Morse's law.
 #[derive(Debug, Clone, Copy)]
 pub struct Morse {
     work: f64,
     range: f64,
-}
-
-/// Convolutions of the Gaussian `W` with the fields of the front at the distance `x`: of `√y`, of `1/√y`, and
-/// the derivative of the latter to `x`. With `y = t²` they are `∫₀^∞ 2t² W dt`, `∫₀^∞ 2 W dt` and
-/// `∫₀^∞ 2 W' dt`, where `W = W(x − t²)`.
-fn edge(x: f64) -> [f64; 3] {
-    // The integrand is even and entire in t, so that the trapezoid rule converges exponentially.
-    let end = (x.max(0.0) + 9.0 * KERNEL_WIDTH).sqrt();
-    let count = 400;
-    let step = end / f64::from(count);
-    let mut sum = [0.0; 3];
-    for k in 0..=count {
-        let t = f64::from(k) * step;
-        let off = (x - t * t) / KERNEL_WIDTH;
-        let weight = if k == 0 || k == count { 1.0 } else { 2.0 } * step * (-0.5 * off * off).exp()
-            / (KERNEL_WIDTH * (2.0 * PI).sqrt());
-        sum[0] += weight * t * t;
-        sum[1] += weight;
-        sum[2] -= weight * off / KERNEL_WIDTH;
-    }
-    sum
-}
-
-/// Gap, tension and the slope `dσ/dg` of the convolved front at the distance `x` (grid spacings) from its
-/// edge, in ℓ and E*ℓ/dx.
-fn front(x: f64) -> [f64; 3] {
-    let (ahead, behind) = (edge(x), edge(-x));
-    let root = PI.sqrt();
-    let (gap, gap_slope) = (4.0 / root * ahead[0], 2.0 / root * ahead[1]);
-    [gap, behind[1] / root, -behind[2] / root / gap_slope]
-}
-
-impl Crack {
-    /// Law for the work of adhesion `work` in E* dx.
-    fn new(work: f64) -> Self {
-        let mut factor = 1.0;
-        let mut law = Self::scaled(factor);
-        // A fixed point: the energy is nearly linear in the factor.
-        for _ in 0..40 {
-            let energy = -law.nodes[0][2] + 0.5 * WALL_STIFFNESS * law.onset * law.onset;
-            if (energy - 1.0_f64).abs() < 1e-13 {
-                break;
-            }
-            factor /= energy;
-            law = Self::scaled(factor);
-        }
-        let depth = -(law.nodes[0][2] - 0.5 * WALL_STIFFNESS * law.onset * law.onset);
-        debug_assert!((depth - 1.0).abs() < 1e-12, "work of adhesion of the law");
-        law.unit = work.sqrt();
-        law.inverse_unit = 1.0 / law.unit;
-        law
-    }
-
-    /// Table with the tension of the front times `factor`.
-    fn scaled(factor: f64) -> Self {
-        // The spring ends where the tension of the front falls below it.
-        let excess = |x: f64| {
-            let [gap, tension, _] = front(x);
-            factor * tension - WALL_STIFFNESS * gap
-        };
-        let (mut low, mut high) = (-4.0 * KERNEL_WIDTH, 4.0 * KERNEL_WIDTH);
-        for _ in 0..80 {
-            let middle = 0.5 * (low + high);
-            if excess(middle) > 0.0 { low = middle } else { high = middle }
-        }
-        let start = 0.5 * (low + high);
-        let onset = front(start)[0];
-        let mut nodes = Vec::new();
-        let mut x = start;
-        loop {
-            let gap = onset + TABLE_SPACING * nodes.len() as f64;
-            // Newton for the place with this gap.
-            for _ in 0..50 {
-                let ahead = edge(x);
-                let off = 4.0 / PI.sqrt() * ahead[0] - gap;
-                x -= off / (2.0 / PI.sqrt() * ahead[1]);
-                if off.abs() < 1e-14 * gap {
-                    break;
-                }
-            }
-            let [_, tension, slope] = front(x);
-            nodes.push([factor * tension, factor * slope, 0.0]);
-            if factor * tension < END_TENSION {
-                break;
-            }
-        }
-        if let Some(last) = nodes.last_mut() {
-            *last = [0.0; 3];
-        }
-        for k in (0..nodes.len() - 1).rev() {
-            let ([s0, d0, _], [s1, d1, v1]) = (nodes[k], nodes[k + 1]);
-            nodes[k][2] = v1 - TABLE_SPACING * (0.5 * (s0 + s1) + TABLE_SPACING * (d0 - d1) / 12.0);
-        }
-        let most = (0..nodes.len()).max_by(|a, b| nodes[*a][0].total_cmp(&nodes[*b][0])).unwrap_or(0);
-        Self { unit: 0.0, inverse_unit: 0.0, onset, peak: onset + TABLE_SPACING * most as f64, nodes }
-    }
-
-    #[inline(always)]
-    fn at(&self, gap: f64) -> Bond {
-        let unit = self.unit;
-        let g = gap * self.inverse_unit;
-        if g < self.onset {
-            return Bond {
-                energy: unit * unit * (0.5 * WALL_STIFFNESS * g * g - 1.0),
-                tension: WALL_STIFFNESS * gap,
-                slope: WALL_STIFFNESS,
-            };
-        }
-        let place = (g - self.onset) * NODES_PER_UNIT;
-        let k = place as usize;
-        if k >= self.nodes.len() - 1 {
-            return Bond::default();
-        }
-        let t = place - k as f64;
-        let ([s0, d0, v0], [s1, d1, _]) = (self.nodes[k], self.nodes[k + 1]);
-        let (d0, d1) = (d0 * TABLE_SPACING, d1 * TABLE_SPACING);
-        // Hermite's cubic s0 + d0 t + b t² + c t³ and its integral.
-        let (b, c) = (3.0 * (s1 - s0) - 2.0 * d0 - d1, 2.0 * (s0 - s1) + d0 + d1);
-        Bond {
-            energy: unit
-                * unit
-                * (v0 + TABLE_SPACING * t * (s0 + t * (0.5 * d0 + t * (b / 3.0 + t * 0.25 * c)))),
-            tension: unit * (s0 + t * (d0 + t * (b + t * c))),
-            slope: (d0 + t * (2.0 * b + t * 3.0 * c)) * NODES_PER_UNIT,
-        }
-    }
 }
 
 impl Morse {
@@ -259,7 +117,37 @@ impl Law {
     /// defined.
     #[must_use]
     pub fn crack(work: f64) -> Self {
-        Self::Crack(Crack::new(work))
+        Self::front(work, &Front::PLAIN)
+    }
+
+    /// As [`Self::crack`], with corrections. The half-space has their [wall](Front::wall_compliance).
+    #[must_use]
+    pub fn front(work: f64, front: &Front) -> Self {
+        Self::Crack(Crack::new(work, front))
+    }
+
+    /// True if fronts have a line tension.
+    #[must_use]
+    pub fn has_line(&self) -> bool {
+        matches!(self, Self::Crack(law) if law.line.is_some())
+    }
+
+    /// Factor `2λΔγ` of the tension by the curvature of the front \[E* dx\].
+    pub(super) fn line_factor(&self) -> f64 {
+        match self {
+            Self::Crack(law) => law.line_factor(),
+            Self::Morse(_) => 0.0,
+        }
+    }
+
+    /// Step φ of a front at a point.
+    #[inline(always)]
+    pub(super) fn profile(&self, bonding: Bonding, gap: f64) -> Profile {
+        match (self, bonding) {
+            (Self::Crack(law), Bonding::Bonded) => law.profile(gap),
+            (Self::Crack(_), Bonding::Sealed) => Profile::INSIDE,
+            _ => Profile::default(),
+        }
     }
 
     /// Morse's law of the work of adhesion `work` \[E* dx\] and the range ρ \[dx\], both positive.
@@ -296,7 +184,7 @@ impl Law {
     pub fn sealed(&self, gap: f64) -> Bond {
         match self {
             Self::Crack(law) => Bond {
-                energy: 0.5 * WALL_STIFFNESS * gap * gap - law.unit * law.unit,
+                energy: 0.5 * WALL_STIFFNESS * gap * gap - law.unit * law.unit * law.depth,
                 tension: WALL_STIFFNESS * gap,
                 slope: WALL_STIFFNESS,
             },
@@ -372,26 +260,40 @@ impl Law {
         }
     }
 
-    /// Gap of the maximum tension \[dx\]: a point is in contact below it.
+    /// Gap below which a point is in contact \[dx\]: that of the maximum tension, or of the place of the
+    /// front.
     #[must_use]
     pub fn contact_gap(&self) -> f64 {
         match self {
-            Self::Crack(law) => law.peak * law.unit,
+            Self::Crack(law) => law.edge * law.unit,
             Self::Morse(law) => law.range * std::f64::consts::LN_2,
+        }
+    }
+
+    /// Gap between the surfaces below which a bonded point is in contact \[dx\]: [`Self::contact_gap`] less
+    /// the displacement of a wall that is a part of the operator.
+    #[must_use]
+    pub fn true_contact_gap(&self) -> f64 {
+        match self {
+            Self::Crack(law) => law.true_edge * law.unit,
+            Self::Morse(_) => self.contact_gap(),
         }
     }
 
     /// Maximum tension \[E*\].
     #[must_use]
     pub fn strength(&self) -> f64 {
-        self.bonded(self.contact_gap()).tension
+        match self {
+            Self::Crack(law) => law.strength(),
+            Self::Morse(_) => self.bonded(self.contact_gap()).tension,
+        }
     }
 
     /// Gap beyond which the tension vanishes, to 1e-6 of the strength \[dx\].
     #[must_use]
     pub fn end_gap(&self) -> f64 {
         match self {
-            Self::Crack(law) => (law.onset + TABLE_SPACING * (law.nodes.len() - 1) as f64) * law.unit,
+            Self::Crack(law) => law.end() * law.unit,
             Self::Morse(law) => 15.0 * law.range,
         }
     }

@@ -174,8 +174,7 @@ impl CycleRun<'_> {
             return None;
         }
         let points = self.problem.half_space.points();
-        let tension =
-            |k: usize| self.problem.bond(self.at.state.bonds[k], self.problem.gap(&self.at.state, k)).tension;
+        let tension = |k: usize| self.problem.tension(&self.at.state, k);
         let largest = (0..points).map(tension).fold(f64::NEG_INFINITY, f64::max);
         Some(self.at.last.totals.load - points as f64 * (strength - largest).max(0.0))
     }
@@ -279,9 +278,9 @@ impl CycleRun<'_> {
         let points = || {
             (0..rows).step_by(stride).flat_map(|i| (0..columns).step_by(stride).map(move |j| i * columns + j))
         };
-        let tension = |k| self.problem.bond(state.bonds[k], self.problem.gap(state, k)).tension;
-        let gap = points().map(|k| self.problem.gap(state, k) as f32).collect();
-        Map { step, stride, gap, pressure: points().map(|k| -tension(k) as f32).collect() }
+        let gap = points().map(|k| self.problem.true_gap(state, k) as f32).collect();
+        let pressure = points().map(|k| -self.problem.tension(state, k) as f32).collect();
+        Map { step, stride, gap, pressure }
     }
 
     fn is_apart(&self) -> bool {

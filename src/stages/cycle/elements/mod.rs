@@ -85,7 +85,7 @@ pub(super) fn run(task: &CycleTask<'_>, options: &ElementOptions) -> Result<Comp
         setup(campaign, unit, ElementsCase { params: task.params(), options })?;
     let cycle = task.follow(&method)?;
     let (size, units, dir) = (method.size(), method.units, campaign.cycle_dir(unit));
-    let contact_gap_m = method.problem.law.contact_gap() * units.spacing_m();
+    let contact_gap_m = method.problem.law.true_contact_gap() * units.spacing_m();
     let free = method.load_without_adhesion(&cycle)?;
     let points = units.own_points();
     let length_m = points as f64 * units.spacing_m();

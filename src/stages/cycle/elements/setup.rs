@@ -6,8 +6,9 @@ use super::super::super::surface::scale;
 use super::ElementsCase;
 use super::lattice::{Lattice, Square, checked_lattice};
 use crate::campaign::{Campaign, CycleUnit};
-use crate::model::{Attraction as Rule, Material, Nucleation, Opening};
+use crate::model::{Attraction as Rule, FrontLaw, Material, Nucleation, Opening};
 use crate::physics::PhysicsError;
+use crate::physics::elements::law::Front;
 use crate::physics::elements::{Attraction, Elements, Options};
 use crate::physics::jkr::Asperity;
 use crate::physics::surface::HeightMap;
@@ -38,7 +39,7 @@ pub(super) fn setup(
     let (rms_height_m, material) = (scale.rms_height_m, scale.material(&params.material));
     let lattice = checked_lattice(of, &header, rms_height_m)?;
     let attraction = match of.options.attraction {
-        Rule::Bonded { nucleation, opening } => bonded(&material, &summits, nucleation, opening)?,
+        Rule::Bonded { nucleation, opening, .. } => bonded(&material, &summits, nucleation, opening)?,
         Rule::Range { range_m } => {
             let spacing_m = length_m / lattice.points as f64;
             let automatic = || automatic_range(material.adhesion_length_m(), spacing_m);
@@ -49,6 +50,10 @@ pub(super) fn setup(
     let options = Options {
         points: lattice.points,
         attraction,
+        law: match of.options.attraction.law() {
+            Some(FrontLaw::Corrected) => Front::CORRECTED,
+            _ => Front::PLAIN,
+        },
         probe: params.probe,
         substrate: params.substrate,
         machine: params.machine,
