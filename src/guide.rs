@@ -33,6 +33,7 @@ pages!(
     python,
     performance,
     architecture,
+    elements_numerics,
     contributing,
     glossary,
 );

@@ -2,9 +2,11 @@
 
 use super::equilibrium::places::SMALLEST_SIDE;
 use super::events::work::DISCONTINUITY;
-use super::law::{KERNEL_WIDTH, MAX_OVERLAP, NEGLIGIBLE_GAP, WALL_STIFFNESS};
+use super::grid::medium::LEFT_COMPLIANCE;
+use super::law::{Front, KERNEL_WIDTH, MAX_OVERLAP, NEGLIGIBLE_GAP, WALL_STIFFNESS};
 use super::numerics::{Minimization, PatchLimits, Reversal, Steps, Weak};
 use super::path::stations::{MAP_STATIONS, MAX_MAP_SIDE};
+use super::setup::SHORTEST_EMPHASISED;
 use crate::constants::Constant;
 
 const STEPS: Steps = Steps::DEFAULT;
@@ -36,6 +38,27 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "`E*/dx`",
         "Spring at small gaps and in compression, bonded attraction.",
         "law",
+    ),
+    Constant::new(
+        "half width of the step of the line tension",
+        &[Front::CORRECTED.line_reach],
+        "`dx`",
+        "Corrected law: function φ of the place at the front.",
+        "law/front",
+    ),
+    Constant::new(
+        "shortest wavelength that is raised",
+        &[SHORTEST_EMPHASISED],
+        "`dx`",
+        "Corrected law: pre-emphasis of the heights.",
+        "setup",
+    ),
+    Constant::new(
+        "compliance that is left",
+        &[LEFT_COMPLIANCE],
+        "of its own",
+        "Corrected law on a layer, where the compliance of the wall is subtracted.",
+        "grid/medium",
     ),
     Constant::new(
         "overlap with linear repulsion",

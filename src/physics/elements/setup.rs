@@ -20,7 +20,7 @@ use std::f64::consts::{PI, TAU};
 const SOFT_MACHINE: f64 = 1000.0;
 /// Shortest wavelength of which heights are divided by the spectrum of the kernel \[dx\]: on coarser grids the
 /// factor would exceed 1.6.
-const SHORTEST_EMPHASISED: f64 = 4.0;
+pub(super) const SHORTEST_EMPHASISED: f64 = 4.0;
 
 /// Units of a surface. With mirror images the grid is symmetric about the edges of the surface, half a pixel
 /// outside its first and last points. A probe needs no mirror images.

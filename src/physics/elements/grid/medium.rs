@@ -35,7 +35,7 @@ pub struct Medium {
 
 /// Fraction of the compliance that is left at least where that of a wall is subtracted: reached by thin layers
 /// at wavelengths beyond their thickness.
-const LEFT_COMPLIANCE: f64 = 0.4;
+pub(crate) const LEFT_COMPLIANCE: f64 = 0.4;
 
 /// Product of wavenumber and thickness from which on a layer is a half-space: `S − 1` is of the order
 /// `s² e^(−2s)`, below 1e-15.

@@ -60,11 +60,8 @@ impl Front {
     };
 
     /// All corrections but the flat kernel.
-    ///
-    /// The line tension is 0.9 of that of first order: the next order of the work of adhesion, about
-    /// `−0.3 Δγ (κ dx)²` on a sphere, then cancels what is left at radii of 6 to 12 grid spacings.
     pub const CORRECTED: Self =
-        Self { is_hard: true, ends_at_front: true, line: 0.9, is_emphasised: true, ..Self::PLAIN };
+        Self { is_hard: true, ends_at_front: true, line: 1.0, is_emphasised: true, ..Self::PLAIN };
 
     /// Compliance of the wall that is taken out of the operator \[dx/E*\].
     #[must_use]
