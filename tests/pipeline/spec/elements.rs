@@ -40,6 +40,16 @@ fn val_refusals_of_boundary_elements() {
 }
 
 #[test]
+fn reg_a_setting_replaces_a_list_of_grids() {
+    let text = spec("boundary_elements.points = [32, 64, 128]");
+    for (setting, coarser, cases) in [("64", vec![], 1), ("[48, 96]", vec![48], 2)] {
+        let setting = format!("boundary_elements.points={setting}");
+        let spec = Spec::parse_with(&text, "x.toml", &[setting]).unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!((spec.coarser_points, spec.cases.len()), (coarser, cases));
+    }
+}
+
+#[test]
 fn val_too_large_a_magnification_for_the_largest_grid() {
     let text = "name = \"x\"\n[surface]\nmagnification = 2048\n[model]\nmethod = \"boundary_elements\"\n";
     let rendered = refused(text);
