@@ -15,7 +15,7 @@ struct Work {
 }
 
 /// The program first, then its methods, then the models next to every result.
-const WORKS: [Work; 8] = [
+const WORKS: [Work; 9] = [
     Work {
         of: Use::Always,
         bibtex: r#"@software{hysteron,
@@ -60,6 +60,18 @@ const WORKS: [Work; 8] = [
   pages   = {209--218},
   year    = {2018},
   doi     = {10.1016/j.jmps.2018.02.005}
+}"#,
+    },
+    Work {
+        of: Use::BoundaryElements,
+        bibtex: r#"@article{roache1994,
+  title   = {Perspective: a method for uniform reporting of grid refinement studies},
+  author  = {Roache, P. J.},
+  journal = {Journal of Fluids Engineering},
+  volume  = {116},
+  pages   = {405--413},
+  year    = {1994},
+  doi     = {10.1115/1.2910291}
 }"#,
     },
     Work {

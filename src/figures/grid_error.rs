@@ -13,6 +13,9 @@ use crate::store::Frame;
 const QUANTITIES: [(&str, &str, &str, [u8; 3]); 2] =
     [("loss", "loss", "Θ", RESULT), ("pull_off_load", "pull_off", "F_{po}", OTHER)];
 
+/// Ratios that the panel shows: beyond, a value is outside.
+const SHOWN: [f64; 2] = [-1.0, 3.0];
+
 /// A case at a load reversal.
 #[derive(Debug, Clone)]
 pub struct OfGrids<'a> {
@@ -56,7 +59,8 @@ pub fn over_grids(grids: &Frame, of: &OfGrids<'_>, number: usize) -> Result<Opti
     }
     let name = format!("grids_{number}");
     let x = Axis::holding("1/N, spacing over shortest wavelength", [0.0, coarsest], true);
-    let y = Axis::holding("over value on finest grid", curves.iter().flat_map(Curve::heights), false);
+    let heights = curves.iter().flat_map(Curve::heights).map(|height| height.clamp(SHOWN[0], SHOWN[1]));
+    let y = Axis::holding("over value on finest grid", heights, false);
     let caption = format!(
         "Θ and F_po on grids of N points per shortest wavelength over their values on the finest grid, for \
          {}: means over surfaces that all grids have. Bands: estimated error of the finest grid. Diamonds: \

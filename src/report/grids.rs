@@ -20,8 +20,12 @@ pub struct Grids {
 const NOTE: &str = "Estimated relative errors of results by boundary elements on the finest grid: contact \
     area A, pull-off force F_{po}, dissipated energy Θ and its parts of events on loading and unloading. \
     The errors follow from the means over surfaces that all grids have, after Roache (1994): with a factor \
-    of safety of 1.25 for three grids and 2 for two. N: grid points per shortest wavelength, of all grids. \
+    of safety of 1.25 for three grids and 2 for two. An avalanche that happens on finer grids only, next to \
+    F_{max}, is not seen by it: compare several loads or surfaces. N: grid points per shortest wavelength, of all grids. \
     Extrapolated Θ: value on an infinitely fine grid, where three grids have a regular series.";
+
+/// Error above which it is not stated as a number: the grids disagree, as where contact is full on one only.
+const LARGEST: f64 = 1.0;
 
 /// Columns of errors with their heads.
 const ERRORS: [(&str, &str); 5] = [
@@ -81,7 +85,9 @@ fn row(of: &Grids, cases: &Cases<'_>, listed: &Listed) -> Result<Vec<Markup>, St
         } }
         td { (of.table.i64("surface_count")?[*last]) }
         td { (scaled(cases.number("loss_mean", listed.row)?, scale)) }
-        @for error in errors { td { (shown(error, Shown::Percent)) } }
+        @for error in errors {
+            td { @if error.is_some_and(|error| error > LARGEST) { "> 100 %" } @else { (shown(error, Shown::Percent)) } }
+        }
         td { (scaled(of.table.f64_or_null("loss_extrapolated")?[*last], scale)) }
     }])
 }

@@ -4,6 +4,7 @@ use super::StatsError;
 use super::digits::labels_with_unit;
 use crate::schema::{Parameter, parameters_by_rank};
 use crate::store::{ColumnData, Frame};
+use std::collections::HashMap;
 
 /// Parameters that are not known before a measured surface is read; of others a missing value is none.
 const UNKNOWN: [&str; 2] = ["length_m", "rms_height_m"];
@@ -118,8 +119,15 @@ pub fn varying(cases: &Frame, rows: &[usize]) -> Result<Vec<Varying>, StatsError
     // a table.
     let tables = cases.text_or_null("spectrum_file")?;
     let tabulated = rows.iter().any(|row| tables.get(*row).is_some_and(Option::is_some));
+    // One file of two sizes is two cases.
+    let sides = cases.f64_or_null("length_m")?;
+    let mut side_of = HashMap::new();
+    let has_sizes = rows.iter().any(|row| {
+        let Some(file) = &files[*row] else { return false };
+        *side_of.entry(file).or_insert(sides[*row]) != sides[*row]
+    });
     let follows = |name: &str| {
-        measured && matches!(name, "rms_height_m" | "length_m")
+        measured && (name == "rms_height_m" || name == "length_m" && !has_sizes)
             || tabulated && matches!(name, "rms_height_m" | "spectrum_reading" | "left_out_ratio")
     };
     for parameter in parameters_by_rank().into_iter().filter(|parameter| !follows(parameter.column.name)) {

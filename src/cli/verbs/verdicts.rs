@@ -15,8 +15,7 @@ const BEFORE_A_RUN: [&str; 2] = ["slow_grid", "long_loop"];
 
 /// Verdicts, warnings and expected errors of a plan, as lines of at most 80 columns.
 pub(super) fn plan_text(of: &Foreseen) -> String {
-    let warnings: String =
-        of.warnings.iter().map(|warning| warning_text(warning, of.verdicts.len())).collect();
+    let warnings: String = of.warnings.iter().map(|warning| warning_text(warning, shown_count(of))).collect();
     regimes(&of.verdicts) + &costs(&of.verdicts) + &warnings + &errors(&of.verdicts)
 }
 
@@ -25,9 +24,14 @@ pub(super) fn run_text(of: &Foreseen) -> String {
     let warnings = BEFORE_A_RUN
         .iter()
         .filter_map(|code| of.warning(code))
-        .map(|warning| warning_text(warning, of.verdicts.len()));
+        .map(|warning| warning_text(warning, shown_count(of)));
     let text = regimes(&of.verdicts) + &costs(&of.verdicts) + &warnings.collect::<String>();
     text.trim_end().to_owned()
+}
+
+/// Number of cases without those that are only coarser grids of others.
+fn shown_count(of: &Foreseen) -> usize {
+    of.verdicts.iter().filter(|of| !of.is_coarser_grid).count()
 }
 
 /// Warning as text.
