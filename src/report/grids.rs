@@ -21,8 +21,8 @@ const NOTE: &str = "Estimated relative errors of results by boundary elements on
     area A, pull-off force F_{po}, dissipated energy Θ and its parts of events on loading and unloading. \
     The errors follow from the means over surfaces that all grids have, after Roache (1994): with a factor \
     of safety of 1.25 for three grids and 2 for two. An avalanche that happens on finer grids only, next to \
-    F_{max}, is not seen by it: compare several loads or surfaces. N: grid points per shortest wavelength, of all grids. \
-    Extrapolated Θ: value on an infinitely fine grid, where three grids have a regular series.";
+    F_{max}, is not seen by it: compare several loads or surfaces. N: grid points per shortest wavelength, \
+    of all grids. Extrapolated Θ: value on an infinitely fine grid, where three grids have a regular series.";
 
 /// Error above which it is not stated as a number: the grids disagree, as where contact is full on one only.
 const LARGEST: f64 = 1.0;
@@ -65,6 +65,15 @@ pub(super) fn section(
     }))
 }
 
+/// An error in percent, if it is a small enough number.
+fn limited(error: Option<f64>) -> Markup {
+    if error.is_some_and(|error| error > LARGEST) {
+        html! { "> 100 %" }
+    } else {
+        shown(error, Shown::Percent)
+    }
+}
+
 /// Row of a case with coarser grids, as a list of one or none.
 fn row(of: &Grids, cases: &Cases<'_>, listed: &Listed) -> Result<Vec<Markup>, StatsError> {
     let id = cases.frame.text("case_id")?[listed.row];
@@ -86,7 +95,7 @@ fn row(of: &Grids, cases: &Cases<'_>, listed: &Listed) -> Result<Vec<Markup>, St
         td { (of.table.i64("surface_count")?[*last]) }
         td { (scaled(cases.number("loss_mean", listed.row)?, scale)) }
         @for error in errors {
-            td { @if error.is_some_and(|error| error > LARGEST) { "> 100 %" } @else { (shown(error, Shown::Percent)) } }
+            td { (limited(error)) }
         }
         td { (scaled(of.table.f64_or_null("loss_extrapolated")?[*last], scale)) }
     }])

@@ -7,6 +7,7 @@ mod bench;
 mod campaign;
 #[cfg(feature = "stats")]
 mod citation;
+#[cfg(feature = "stats")]
 mod cli;
 #[cfg(feature = "stats")]
 mod e2e;
