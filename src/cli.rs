@@ -39,7 +39,7 @@ pub struct Arguments {
 enum Verb {
     /// Print a commented spec to start from
     Init {
-        /// quickstart, sweep, scan, spectrum, probe, loop or full
+        /// Name of a template, as --list shows
         #[arg(value_enum, default_value = "quickstart", hide_possible_values = true)]
         template: templates::Template,
         /// List the templates

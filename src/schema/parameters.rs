@@ -350,8 +350,8 @@ const LIST: [Parameter; COUNT] = [
     parameter(
         text(
             "front_law",
-            "Law of the edges of contact of boundary elements: \"plain\" or \"corrected\"; null for asperities \
-             and with a range",
+            "Law of the edges of contact of boundary elements: \"plain\" or \"corrected\"; null for \
+             asperities and with a range",
         )
         .or_null(),
         ["law", "law"],

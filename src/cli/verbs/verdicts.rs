@@ -29,7 +29,7 @@ pub(super) fn run_text(of: &Foreseen) -> String {
     text.trim_end().to_owned()
 }
 
-/// Number of cases without those that are only coarser grids of others.
+/// Number of cases, without coarser grids of other cases.
 fn shown_count(of: &Foreseen) -> usize {
     of.verdicts.iter().filter(|of| !of.is_coarser_grid).count()
 }

@@ -18,8 +18,8 @@ use std::f64::consts::{PI, TAU};
 /// Compliance of the spring of load control, in `1/(E*L)`. That of a contact is `1/(2E*a)`, so that the load
 /// changes by less than 1 % of a jump's own force in a jump of a contact of radius `a > L/16`.
 const SOFT_MACHINE: f64 = 1000.0;
-/// Shortest wavelength of which heights are divided by the spectrum of the kernel \[dx\]: on coarser grids the
-/// factor would exceed 1.6.
+/// Shortest wavelength of which heights are divided by the spectrum of the kernel \[dx\]: on coarser grids
+/// the factor would exceed 1.6.
 pub(super) const SHORTEST_EMPHASISED: f64 = 4.0;
 
 /// Units of a surface. With mirror images the grid is symmetric about the edges of the surface, half a pixel
@@ -81,8 +81,8 @@ pub(super) fn heights(
     Ok(heights)
 }
 
-/// Heights over the spectrum of the kernel of the law, with a shortest wavelength \[dx\]: up to its wavenumber,
-/// or that of [`SHORTEST_EMPHASISED`]. Beyond, the factor is that of this wavenumber.
+/// Heights over the spectrum of the kernel of the law, with a shortest wavelength \[dx\]: up to its
+/// wavenumber, or that of [`SHORTEST_EMPHASISED`]. Beyond, the factor is that of this wavenumber.
 fn emphasised(heights: Array2<f64>, law: &Front, shortest: f64) -> Result<Array2<f64>, PhysicsError> {
     let highest = TAU / shortest.max(SHORTEST_EMPHASISED);
     let shape = heights.dim();

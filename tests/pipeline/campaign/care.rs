@@ -83,7 +83,7 @@ fn e2e_a_receipt_tells_what_when_and_with_what() {
     assert_eq!(cycle["files"].as_array().unwrap().len(), 6);
     assert_eq!(
         of("report")["files"].as_array().unwrap().len(),
-        (2 * 5 + 8 + 1) * if cfg!(feature = "raster") { 3 } else { 1 } + 2,
+        (2 * 6 + 10 + 1) * if cfg!(feature = "raster") { 3 } else { 1 } + 2,
         "panels in both units, pictures of a cycle and works of adhesion in the formats of the build, their table and the page"
     );
     // No data file tells any of that.

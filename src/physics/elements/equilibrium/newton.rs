@@ -1,9 +1,9 @@
 //! Newton's method with truncated conjugate gradients (Steihaug, SIAM J. Numer. Anal. 20:626, 1983): the
 //! second way to an equilibrium, where L-BFGS does not end.
 //!
-//! The model of the energy is `g·p + ½ p·(K + V'')p`, with `V''` for all second derivatives of the law. Its minimum is approached by conjugate gradients with
-//! the split preconditioner, until a direction has a negative curvature or the step would exceed the reach of
-//! the law; such a step ends at that reach.
+//! The model of the energy is `g·p + ½ p·(K + V'')p`, with `V''` for all second derivatives of the law. Its
+//! minimum is approached by conjugate gradients with the split preconditioner, until a direction has a
+//! negative curvature or the step would exceed the reach of the law; such a step ends at that reach.
 
 use super::minimise::{Accuracy, ElasticResponse, Minimiser, Outcome};
 use super::passes::{PAIRS, Right};

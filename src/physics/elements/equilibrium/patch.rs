@@ -249,7 +249,7 @@ impl Patch {
         self.hold_line_at_border(on, place);
     }
 
-    /// Adds what the tension of the line at the border of the patch is with the points beyond it, as a pressure.
+    /// Adds the tension of the line that points beyond the border of the patch cause at it, as a pressure.
     fn hold_line_at_border(&mut self, on: &WorkingState<'_>, place: Place) {
         let (law, side) = (&on.problem.law, self.side());
         if !law.has_line() {

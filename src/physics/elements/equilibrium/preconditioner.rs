@@ -8,8 +8,8 @@ use rayon::prelude::*;
 /// Points in contact, of a slope of the law above `stiff`, are nearly fixed by the wall; at open points the
 /// law softens near a front of contact.
 const SPLIT: Split = Split { stiff: 0.3, added: 0.7, softening: 1.0 };
-/// The same with hard contact, whose operator is stiffer at short wavelengths. With the values of [`SPLIT`] a
-/// loop takes a quarter more transforms.
+/// With hard contact, whose operator is stiffer at short wavelengths. With the values of [`SPLIT`] a loop
+/// takes a quarter more transforms.
 const HARD: Split = Split { stiff: 1.0, added: 0.7, softening: 0.2 };
 /// All points as open ones.
 const WHOLE: Split = Split { stiff: f32::INFINITY, added: 0.0, softening: 0.0 };

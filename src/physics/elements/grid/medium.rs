@@ -33,7 +33,7 @@ pub struct Medium {
     pub wall_compliance: f64,
 }
 
-/// Fraction of the compliance that is left at least where that of a wall is subtracted: reached by thin layers
+/// Minimum fraction of the compliance that is left where that of a wall is subtracted: reached by thin layers
 /// at wavelengths beyond their thickness.
 pub(crate) const LEFT_COMPLIANCE: f64 = 0.4;
 
