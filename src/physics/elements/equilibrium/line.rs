@@ -85,8 +85,8 @@ pub(super) fn sweep(
 }
 
 /// Adds the tension of the line to the gradient. Adds to the slopes, for the preconditioner, the excess of
-/// the slope of the tension of a straight front over that of the law, and a mean stiffness of the line for waves
-/// along the front. Returns the sums of [`Found`] but that of the elastic response.
+/// the slope of the tension of a straight front over that of the law, and a mean stiffness of the line for
+/// waves along the front. Returns the sums of [`Found`] but that of the elastic response.
 pub(super) fn add_line(
     problem: &Problem,
     from: Gaps<'_>,
