@@ -1,12 +1,11 @@
 //! Contact of one surface at one load by both methods.
 
 use super::axis::Axis;
-use super::closer::plot;
 use super::curve::{Stroke, XyPlot};
 use super::drawing::Drawing;
 use super::map::{ABOVE, GAP, LEGEND, PULLED, PUSHED, SIDE, circles, legend, scale_bar, sheet};
 use super::panels::Panel;
-use super::style::{OTHER, RESULT, THEORY, curve, shade};
+use super::style::{OTHER, RESULT, THEORY, curve, plot, shade};
 use super::{FigureError, markup};
 use crate::store::{Frame, LoopMaps};
 use ndarray::ArrayView2;

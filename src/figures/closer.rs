@@ -9,7 +9,7 @@ use super::drawing::Drawing;
 use super::hysteresis::of_branches;
 use super::map::map;
 use super::panels::Panel;
-use super::style::{OTHER, RESULT, THEORY, curve, entry, shade};
+use super::style::{OTHER, RESULT, THEORY, curve, plot, shade};
 use crate::stats::significant;
 use crate::store::Frame;
 use crate::text::counted;
@@ -59,23 +59,6 @@ type End = (Landmark, i64, [u8; 3], Stroke);
 
 fn panel(name: &str, caption: String, plot: XyPlot) -> Panel {
     Panel::alone(name, caption, XyPlot { stem: format!("closer_{name}"), ..plot })
-}
-
-pub(super) fn plot(
-    title: String,
-    x: Axis,
-    y: Axis,
-    curves: Vec<Curve>,
-    key: &[(&str, [u8; 3], Stroke)],
-) -> XyPlot {
-    let marked = |colour: &str, stroke: Stroke| {
-        curves.iter().any(|of| of.colour == colour && of.stroke == stroke && of.is_marked())
-    };
-    let key = key
-        .iter()
-        .map(|(text, hue, stroke)| entry(text, *hue, Some(*stroke), marked(&shade(*hue, 0, 1), *stroke)))
-        .collect();
-    XyPlot { stem: String::new(), letter: ' ', title, x, y, curves, key, notes: Vec::new(), margin: 0.0 }
 }
 
 /// A branch, its hue, and its events as places in their table.

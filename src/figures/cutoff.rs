@@ -3,10 +3,9 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::captions;
-use super::closer::plot;
 use super::curve::{Curve, Stroke, XyPlot};
 use super::panels::Panel;
-use super::style::{NEUTRAL, OTHER, RESULT, THEORY, curve, entry, shade};
+use super::style::{NEUTRAL, OTHER, RESULT, THEORY, curve, entry, plot, shade};
 use crate::store::Frame;
 
 /// Works of adhesion of a case at a load reversal.

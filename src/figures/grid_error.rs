@@ -3,10 +3,9 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::captions;
-use super::closer::plot;
 use super::curve::{Curve, Stroke, XyPlot};
 use super::panels::Panel;
-use super::style::{OTHER, RESULT, curve, entry, shade};
+use super::style::{OTHER, RESULT, curve, entry, plot, shade};
 use crate::store::Frame;
 
 /// Results: column of the table `grids` without its ending, stem of its error, name in the key, and hue.

@@ -1,9 +1,8 @@
 //! Panels of the two branches of a loop: their difference, and the tensile part.
 
 use super::axis::Axis;
-use super::closer::plot;
 use super::curve::{Stroke, XyPlot};
-use super::style::{NEUTRAL, RESULT, curve, shade};
+use super::style::{NEUTRAL, RESULT, curve, plot, shade};
 
 /// Upper end of the tensile part, in pull-off forces.
 const ABOVE: f64 = 0.5;

@@ -3,10 +3,9 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::captions;
-use super::closer::plot;
 use super::curve::{Curve, KeyEntry, Stroke, XyPlot};
 use super::panels::Panel;
-use super::style::{THEORY, case_colour, curve, entry};
+use super::style::{THEORY, case_colour, curve, entry, plot};
 use crate::store::Frame;
 
 /// Name of the panel in the table of panels.

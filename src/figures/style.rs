@@ -1,6 +1,7 @@
 //! The hues and strokes of the figures: the colour is the case, the dash is the branch.
 
-use super::curve::{Curve, KeyEntry, Stroke};
+use super::axis::Axis;
+use super::curve::{Curve, KeyEntry, Stroke, XyPlot};
 
 /// Colours of cases, distinct with any colour vision (Okabe and Ito); yellow is left out, since it is too
 /// pale on white.
@@ -88,4 +89,22 @@ pub(super) fn curve(name: &str, of: &str, points: Vec<(f64, f64)>, colour: Strin
 
 pub(super) fn entry(text: &str, hue: [u8; 3], stroke: Option<Stroke>, marked: bool) -> KeyEntry {
     KeyEntry { text: text.to_owned(), colour: shade(hue, 0, 1), stroke, marked, joined: true }
+}
+
+/// A plot with a title and samples of its curves.
+pub(super) fn plot(
+    title: String,
+    x: Axis,
+    y: Axis,
+    curves: Vec<Curve>,
+    key: &[(&str, [u8; 3], Stroke)],
+) -> XyPlot {
+    let marked = |colour: &str, stroke: Stroke| {
+        curves.iter().any(|of| of.colour == colour && of.stroke == stroke && of.is_marked())
+    };
+    let key = key
+        .iter()
+        .map(|(text, hue, stroke)| entry(text, *hue, Some(*stroke), marked(&shade(*hue, 0, 1), *stroke)))
+        .collect();
+    XyPlot { stem: String::new(), letter: ' ', title, x, y, curves, key, notes: Vec::new(), margin: 0.0 }
 }

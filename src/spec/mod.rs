@@ -22,6 +22,7 @@ mod probe;
 mod psd;
 mod realizations;
 mod reference;
+mod scan_sides;
 mod scans;
 mod settings;
 mod shape;
@@ -57,7 +58,7 @@ pub use keys::{GENERATED, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_LOADS, REPLACE
 pub use probe::{contact_radius_m, probe_refusal};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
-pub use sides::SideReader;
+pub use scan_sides::SideReader;
 pub use values::Values;
 
 /// Limits of specs.
@@ -261,7 +262,7 @@ impl Spec {
     /// Every fault of the first faulty setting, or else of the text with the settings.
     pub fn parse_with(text: &str, file: &str, settings: &[String]) -> Result<Self, SpecErrors> {
         let spec = Self::parse_known(text, file, settings, &Known::default())?;
-        sides::of_scans(&spec, (text, file, settings), UNREAD.side_m)?;
+        scan_sides::of_scans(&spec, (text, file, settings), UNREAD.side_m)?;
         Ok(spec)
     }
 
@@ -323,7 +324,7 @@ impl Spec {
         let mut known = Known::default();
         let mut spec = read(&known)?;
         if !spec.unread.is_empty() {
-            known.sides_m = sides::of_scans(&spec, (&text, &file, settings), reader.side_m)?;
+            known.sides_m = scan_sides::of_scans(&spec, (&text, &file, settings), reader.side_m)?;
             spec = read(&known)?;
         }
         if spec.auto_methods.contains(&Method::Auto) {
