@@ -195,7 +195,7 @@ fn law_the_stage_of_a_key_reads_it() {
     let corrected = "surface.outliers = true\nsurface.align_rows = true\nsurface.tip_radius_m = 1e-8";
     let measured =
         format!("name = \"x\"\nsurface.file = \"a.h5\"\n{corrected}\nmodel.boundary = \"isolated\"\nfiles = {{ \"a.h5\" = \"{digest}\" }}");
-    let elements = "name = \"x\"\nsurface.magnification = 8\nmodel.method = \"boundary_elements\"";
+    let elements = "name = \"x\"\nsurface.magnification = 8\nmodel.method = \"boundary_elements\"\nboundary_elements.law = \"corrected\"";
     let shape =
         "name = \"x\"\nsurface.longest_wavelength_m = 5e-4\nsurface.roll_off_m = 1e-4\nsurface.aspect_ratio = 2\nsurface.angle_deg = 30";
     let sphere = "name = \"x\"\nprobe.radius_m = 1e-3\nmachine.stiffness_n_m = 10\nsubstrate.thickness_m = 1e-3\nmodel.method = \"boundary_elements\"\nsurface.magnification = 8\ncycle.max_load = [1e-4]";

@@ -24,7 +24,7 @@ fn keys(campaign: &Campaign) -> [Vec<String>; 5] {
 }
 
 /// Another value for every key of a spec, and the first stage that reads it: 0 generate, 2 cycle, 3 aggregate, 4 report.
-const OTHERS: [(&str, &str, usize); 31] = [
+const OTHERS: [(&str, &str, usize); 32] = [
     ("name", "\"y\"", 3),
     ("figures", "{ format = [\"svg\"], width_mm = 88.0, font = \"DejaVu Sans\" }", 4),
     ("seed", "2022", 0),
@@ -51,6 +51,7 @@ const OTHERS: [(&str, &str, usize); 31] = [
     ("boundary_elements.range_m", "1e-7", 4),
     ("boundary_elements.nucleation", "\"wu\"", 4),
     ("boundary_elements.opening", "\"anywhere\"", 4),
+    ("boundary_elements.law", "\"corrected\"", 4),
     ("boundary_elements.approach_step", "0.02", 4),
     ("boundary_elements.halvings", "3", 4),
     ("boundary_elements.precision", "1e-5", 4),
@@ -88,6 +89,18 @@ fn law_every_key_reruns_exactly_the_stages_that_read_it() {
         met.insert(name);
     }
     assert_eq!(met.len(), OTHERS.len(), "every key of the spec has been tried");
+}
+
+/// Tasks of the plain law have the keys that they had before there was another one.
+#[test]
+fn law_the_default_law_is_no_input() {
+    let law = |line: &str| {
+        let text = format!("name = \"x\"\nsurface.magnification = 8\nmodel.method = \"boundary_elements\"\n{line}");
+        let campaign = campaign(&text);
+        campaign.cycle_preimages(&campaign.cycles[0])["cycle"].pointer("/reads/boundary_elements/law").cloned()
+    };
+    assert_eq!([law(""), law("boundary_elements.law = \"plain\"")], [None, None]);
+    assert_eq!(law("boundary_elements.law = \"corrected\""), Some("corrected".into()));
 }
 
 #[test]
