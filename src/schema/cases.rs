@@ -1,7 +1,7 @@
 //! The table of cases: means over realizations.
 
 use super::event_kinds::event_kinds;
-use super::grid_errors::GRID_ERRORS;
+use super::grid_errors::{GRID_ERRORS, GRID_SURFACES};
 use super::parameters::PARAMETER_COLUMNS;
 use super::realizations::{CASE, MAX_LOAD};
 use super::{Column, Table, count, join, real, text};
@@ -416,6 +416,7 @@ static CASE_COLUMNS: [Column;
         + VALIDITY_COLUMNS.len()
         + MEAN_COUNTS.len()
         + GRID_ERRORS.len()
+        + GRID_SURFACES.len()
         + COUNTS.len()] = join(&[
     CASE,
     &PARAMETER_COLUMNS,
@@ -425,6 +426,7 @@ static CASE_COLUMNS: [Column;
     &VALIDITY_COLUMNS,
     MEAN_COUNTS,
     GRID_ERRORS,
+    GRID_SURFACES,
     COUNTS,
 ]);
 

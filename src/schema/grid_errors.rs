@@ -31,6 +31,14 @@ pub(super) const GRID_ERRORS: &[Column] = &[
     error!("unloading", "dissipated energy of events during unloading"),
 ];
 
+/// Number of surfaces behind the errors of a mean.
+pub(super) const GRID_SURFACES: &[Column] = &[count(
+    "grid_surface_count",
+    "Surfaces that all grids of the case have: the estimated error of the dissipated energy is that of their \
+     mean; null without coarser grids",
+)
+.or_null()];
+
 /// Mean, relative error and extrapolated value of one result on a grid.
 macro_rules! on_grid {
     ($name:literal, $stem:literal, $what:literal) => {

@@ -32,6 +32,9 @@ pub const QUANTITIES: [(&str, &str); 5] = [
     ("dissipated_unloading", "unloading"),
 ];
 
+/// Column of the table `cases` with the number of surfaces behind the errors of means.
+const SURFACES: &str = "grid_surface_count";
+
 /// Grids of a series, at most: the finest ones.
 const MOST: usize = 3;
 
@@ -64,19 +67,21 @@ pub fn with_grid_errors(
     let by_case: HashMap<&str, &CaseInput> =
         inputs.iter().map(|case| (case.case_id.as_str(), case)).collect();
     let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
-    let (mut of_cases, mut grids) = (Vec::new(), Rows::of(&GRIDS));
+    let (mut of_cases, mut surfaces, mut grids) = (Vec::new(), Vec::new(), Rows::of(&GRIDS));
     for (id, load) in ids.iter().zip(&loads) {
         let series = by_case.get(id).map(|case| loops.series(case, *load)).unwrap_or_default();
         of_cases.push(series.last().map(|grid| grid.errors(rule)).unwrap_or_default());
-        if series.len() > 1 && !hidden.contains(id) {
+        let is_series = series.len() > 1 && !hidden.contains(id);
+        surfaces.push(series.last().filter(|_| is_series).map(|grid| grid.surface_count as i64));
+        if is_series {
             for grid in &series {
                 grids.push(&[&grid.row(id, *load, rule)]);
             }
         }
     }
     Ok(WithGridErrors {
-        realizations: filled(realizations, &of_loops.collect::<Vec<_>>(), &hidden)?,
-        cases: filled(cases, &of_cases, &hidden)?,
+        realizations: filled(realizations, (&of_loops.collect::<Vec<_>>(), &[]), &hidden)?,
+        cases: filled(cases, (&of_cases, &surfaces), &hidden)?,
         grids: grids.build()?,
     })
 }
@@ -84,8 +89,12 @@ pub fn with_grid_errors(
 /// Relative errors of the results, in the order of [`QUANTITIES`].
 type Errors = [Option<f64>; QUANTITIES.len()];
 
-/// A table with the columns of errors, without the rows of some cases.
-fn filled(frame: &Frame, errors: &[Errors], hidden: &BTreeSet<&str>) -> Result<Frame, StatsError> {
+/// A table with the columns of errors and of the surfaces behind them, without the rows of some cases.
+fn filled(
+    frame: &Frame,
+    (errors, surfaces): (&[Errors], &[Option<i64>]),
+    hidden: &BTreeSet<&str>,
+) -> Result<Frame, StatsError> {
     let ids = frame.text("case_id")?;
     let kept: Vec<usize> = (0..ids.len()).filter(|row| !hidden.contains(ids[*row])).collect();
     let mut built = Frame::of(frame.table());
@@ -93,6 +102,7 @@ fn filled(frame: &Frame, errors: &[Errors], hidden: &BTreeSet<&str>) -> Result<F
         let place = QUANTITIES.iter().position(|(_, stem)| error_column(stem) == column.name);
         let data = match (place, data) {
             (Some(place), _) => ColumnData::F64(kept.iter().map(|row| errors[*row][place]).collect()),
+            (None, _) if column.name == SURFACES => ColumnData::I64(picked(surfaces, &kept)),
             (None, ColumnData::F64(values)) => ColumnData::F64(picked(values, &kept)),
             (None, ColumnData::I64(values)) => ColumnData::I64(picked(values, &kept)),
             (None, ColumnData::Bool(values)) => ColumnData::Bool(picked(values, &kept)),

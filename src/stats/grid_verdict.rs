@@ -18,6 +18,7 @@ struct Columns<'a> {
     means: &'a [Option<f64>],
     highs: &'a [Option<f64>],
     grid: &'a [Option<f64>],
+    of_grids: &'a [Option<i64>],
     done: Vec<i64>,
     methods: Vec<&'a str>,
 }
@@ -28,6 +29,7 @@ impl<'a> Columns<'a> {
             means: cases.f64_or_null("loss_mean")?,
             highs: cases.f64_or_null("loss_ci95_high")?,
             grid: cases.f64_or_null("loss_grid_error")?,
+            of_grids: cases.i64_or_null("grid_surface_count")?,
             done: cases.i64("done_count")?,
             methods: cases.text("method")?,
         })
@@ -46,7 +48,10 @@ impl<'a> Columns<'a> {
             || format!(" ({surfaces})"),
             |high| format!(" ± {} ({surfaces})", percent((high - mean) / mean.abs())),
         );
-        Some(format!("Θ = {} ± {} (grid){of_surfaces}", number(mean), percent(error)))
+        // Surfaces that a coarser grid lacks are in the mean and not in the error.
+        let fewer = self.of_grids[row].filter(|of| *of < self.done[row]);
+        let grid = fewer.map_or_else(|| "grid".to_owned(), |of| format!("grid, {}", count(of)));
+        Some(format!("Θ = {} ± {} ({grid}){of_surfaces}", number(mean), percent(error)))
     }
 }
 

@@ -149,3 +149,15 @@ fn e2e_without_coarser_grids_the_error_is_unknown() {
     let (_, said) = finished(&spec.replace("\"boundary_elements\"", "\"asperities\""));
     assert!(!said.contains("grid error"), "{said}");
 }
+
+/// Surfaces that are added for the confidence interval have no coarser grids: the error is that of the first ones, and the sentence says so.
+#[test]
+fn e2e_errors_of_fewer_surfaces_say_so() {
+    let sampled = "realizations = { until_relative_ci = 1e-3, min = 2, max = 3 }";
+    let spec = SPEC.replace("realizations = 2", sampled).replace("[16, 32, 64]", "[16, 32]").replace("[0.002, 0.004]", "[0.004]");
+    let (bench, said) = finished(&spec);
+    let cases = statistics(&bench, &schema::CASES);
+    assert_eq!((cases.i64("done_count").unwrap()[0], cases.i64_or_null("grid_surface_count").unwrap()[0]), (3, Some(2)));
+    let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("% (grid, two surfaces) ±") && words.contains("% (three surfaces)"), "{said}");
+}
