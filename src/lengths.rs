@@ -1,4 +1,7 @@
-//! Units of length.
+//! Units of length, and when two statements of one length agree.
+
+/// Relative difference up to which two statements of one size agree.
+pub const SAME_SIZE: f64 = 1e-3;
 
 /// The units of length that are understood, as an error lists them.
 pub const LENGTHS: &str = "km, m, mm, µm or um, nm, pm, Å or A, in, mil";

@@ -243,9 +243,8 @@ const fn present(versions: &[(u32, &str)]) -> u32 {
 fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
     let mut tables = plain(&read_by_cycle(params));
     let mut take = |name: &'static str| (name, tables[name].take());
-    let [material, mut model, elements, mut cycle] =
+    let [material, mut model, mut elements, mut cycle] =
         ["material", "model", "boundary_elements", "cycle"].map(&mut take);
-    let mut elements = elements;
     remove_plain_law(&mut elements.1);
     let further = OPTIONAL_TABLES.map(&mut take).into_iter().filter(|(_, table)| !table.is_null());
     let of_method = match &params.method {

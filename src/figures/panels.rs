@@ -104,7 +104,7 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result
     };
     let mut cases: Vec<(String, String)> = Vec::new();
     for member in &found.members {
-        let label = if found.has_facets() { member.series.clone() } else { named(member) };
+        let label = if found.has_facets { member.series.clone() } else { named(member) };
         if !cases.iter().any(|(known, _)| *known == label) {
             cases.push((label, member.colour.clone()));
         }

@@ -24,15 +24,9 @@ pub(super) fn paths(
     let groups = facets(sweep);
     let of_group = |members: &Vec<&Member>| -> Result<Parts, FigureError> {
         let source = Source { table, column, quantity, scales };
-        let (mut curves, mut drawn) = (Vec::new(), Vec::new());
-        // One loading path serves all load reversals of a case: it has the colour of the largest load.
-        for member in members.iter().rev() {
-            if !drawn.contains(&member.case_id) {
-                curves.push(source.curve(member, "loading", members.len())?);
-                drawn.push(member.case_id.clone());
-            }
-        }
-        curves.reverse();
+        let mut curves: Vec<Curve> = with_loading(members)
+            .map(|member| source.curve(member, "loading", members.len()))
+            .collect::<Result<_, _>>()?;
         let unloading: Vec<Curve> = members
             .iter()
             .map(|member| source.curve(member, "unloading", members.len()))
@@ -60,6 +54,13 @@ pub(super) fn paths(
     Ok(parts.into_iter().map(plot).collect())
 }
 
+/// The last member of each case, by load. One loading path serves all load reversals of a case: it has the
+/// colour of the largest load.
+pub(super) fn with_loading<'a>(members: &[&'a Member]) -> impl Iterator<Item = &'a Member> {
+    let is_last = |k: &usize| members[k + 1..].iter().all(|later| later.case_id != members[*k].case_id);
+    (0..members.len()).filter(is_last).map(|k| members[k])
+}
+
 /// Names of members at the ends of their curves, as far as they have room.
 pub(super) fn noted<'a>(
     sweep: &Sweep,
@@ -70,7 +71,7 @@ pub(super) fn noted<'a>(
     let named =
         members.into_iter().zip(curves).enumerate().filter(|(at, _)| curves.len() > 1 && at % every == 0);
     let note = |(_, (member, curve)): (usize, (&Member, &Curve))| {
-        let text = if sweep.has_facets() { &member.series } else { &member.label };
+        let text = if sweep.has_facets { &member.series } else { &member.label };
         curve.points.first().map(|end| Note { at: *end, text: text.clone(), beside })
     };
     named.filter_map(note).collect()
@@ -78,7 +79,7 @@ pub(super) fn noted<'a>(
 
 /// Title of the plot of some members: the value that they share.
 pub(super) fn facet_title(sweep: &Sweep, members: &[&Member]) -> String {
-    members.first().filter(|_| sweep.has_facets()).map_or_else(String::new, |member| member.facet.clone())
+    members.first().filter(|_| sweep.has_facets).map_or_else(String::new, |member| member.facet.clone())
 }
 
 /// Title, curves and notes of a plot.
@@ -87,7 +88,7 @@ pub(super) type Parts = (String, Vec<Curve>, Vec<Note>);
 /// Members by value of the first parameter where several vary; of many values the first, the last and some
 /// between.
 pub(super) fn facets(sweep: &Sweep) -> Vec<Vec<&Member>> {
-    if !sweep.has_facets() {
+    if !sweep.has_facets {
         return vec![sweep.members.iter().collect()];
     }
     let places = places(sweep);

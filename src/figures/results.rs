@@ -103,7 +103,7 @@ fn joined<'a>(sweep: &'a Sweep, series: &'a str) -> impl Iterator<Item = &'a Mem
 
 /// Colour of a line: that of its series if several parameters vary.
 fn line_colour(sweep: &Sweep, series: &str, else_of: [u8; 3]) -> String {
-    let member = joined(sweep, series).next().filter(|_| sweep.has_facets());
+    let member = joined(sweep, series).next().filter(|_| sweep.has_facets);
     member.map_or_else(|| shade(else_of, 0, 1), |member| member.colour.clone())
 }
 

@@ -3,7 +3,7 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::curve::{Curve, Stroke, XyPlot};
-use super::paths::{Parts, facet_title, facets, key_of, noted, unnamed};
+use super::paths::{Parts, facet_title, facets, key_of, noted, unnamed, with_loading};
 use super::style::curve;
 use super::sweep::{Member, Sweep, Tables};
 use super::units::Units;
@@ -27,9 +27,7 @@ pub(super) fn sizes(tables: &Tables<'_>, sweep: &Sweep, units: Units) -> Result<
         curve(branch, &member.label, points, member.colour.clone(), stroke)
     };
     let of_group = |members: Vec<&Member>| {
-        let is_last = |k: &usize| members[k + 1..].iter().all(|later| later.case_id != members[*k].case_id);
-        let loading =
-            (0..members.len()).filter(is_last).map(|k| of(members[k], "loading", None, Stroke::Dashed));
+        let loading = with_loading(&members).map(|member| of(member, "loading", None, Stroke::Dashed));
         let mut curves: Vec<Curve> = loading.collect();
         let back = |member: &&Member| of(member, "unloading", Some(member.max_load), Stroke::Solid);
         let unloading: Vec<Curve> = members.iter().map(back).collect();

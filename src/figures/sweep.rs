@@ -47,8 +47,9 @@ pub(super) struct Sweep {
     pub(super) members: Vec<Member>,
     /// Varying parameters, the horizontal axis first; nothing if only the load reversal varies.
     pub(super) differing: Vec<Varying>,
-    /// True if there are several load reversals.
-    pub(super) many_loads: bool,
+    /// True if several parameters vary, and not together: the colour is that of the series, and the panels of
+    /// paths have one value of the horizontal axis each.
+    pub(super) has_facets: bool,
     /// Symbol of the load reversal.
     pub(super) load_symbol: &'static str,
     pub(super) axis: Axis,
@@ -108,14 +109,9 @@ impl Sweep {
                 .then(a.case_id.cmp(&b.case_id))
         });
         let axis = axis(&differing, words, &members);
-        colour(&mut members, &differing);
-        Ok(Self { members, differing, many_loads, load_symbol: loads.symbol, axis })
-    }
-
-    /// True if several parameters vary, and not together: the colour is that of the series, and the panels of
-    /// paths have one value of the horizontal axis each.
-    pub(super) fn has_facets(&self) -> bool {
-        is_grid(&self.members, &self.differing)
+        let has_facets = is_grid(&members, &differing);
+        colour(&mut members, &differing, has_facets);
+        Ok(Self { members, differing, has_facets, load_symbol: loads.symbol, axis })
     }
 
     /// True if lines join the results: not between categories.
@@ -143,7 +139,7 @@ impl Sweep {
         Ok(Self {
             members,
             differing,
-            many_loads: false,
+            has_facets: false,
             load_symbol: "",
             axis: Axis::of_words("run", labels.to_vec()),
         })
@@ -220,11 +216,10 @@ fn is_grid(members: &[Member], differing: &[Varying]) -> bool {
 
 /// Colours the members: a colour for each value of what varies, with several parameters for each series, and
 /// for each load where only the load varies. Numbers have colours in their order.
-fn colour(members: &mut [Member], differing: &[Varying]) {
+fn colour(members: &mut [Member], differing: &[Varying], by_series: bool) {
     let mut loads: Vec<f64> = members.iter().map(|member| member.max_load).collect();
     loads.sort_by(f64::total_cmp);
     loads.dedup();
-    let by_series = is_grid(members, differing);
     let word = |member: &Member| match (differing.len(), by_series) {
         (0, _) => member.max_load.to_string(),
         (_, true) => format!("{:?}", member.rank),

@@ -6,14 +6,11 @@ use super::fault::Faults;
 use super::settings::documents;
 use super::sides::{Unread, collapsed};
 use super::{Spec, SpecErrors};
+use crate::lengths::SAME_SIZE;
 use crate::model::MeasuredSurface;
 
 /// Side of the square of a scan \[m\], or the problem and the help.
 pub type SideReader<'a> = &'a dyn Fn(&MeasuredSurface) -> Result<f64, (String, String)>;
-
-/// Relative difference below which the sides of several scans count as equal: that of a stated size against
-/// the size in the file.
-const SAME: f64 = 1e-3;
 
 /// The sides of the points whose scans have not been read.
 pub(super) fn of_scans(
@@ -48,7 +45,7 @@ fn common_side(surface: &MeasuredSurface, reader: SideReader<'_>) -> Result<f64,
     let sides = scans.map(read).collect::<Result<Vec<f64>, _>>()?;
     let least = sides.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = sides.iter().copied().fold(0.0, f64::max);
-    if largest <= least * (1.0 + SAME) {
+    if largest <= least * (1.0 + SAME_SIZE) {
         return Ok(least);
     }
     let problem = format!(

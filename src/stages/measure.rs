@@ -4,7 +4,7 @@ use super::StageError;
 use super::correction::{corrected, refused};
 use super::scan_spectra::scan_spectrum;
 use crate::formats::recognize;
-use crate::lengths::{LENGTHS, metres};
+use crate::lengths::{LENGTHS, SAME_SIZE, metres};
 use crate::model::MeasuredSurface;
 use crate::model::{Detrend, Filter};
 use crate::physics::surface::common_spectrum::ScanSpectrum;
@@ -20,9 +20,6 @@ use ndarray::Array2;
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 use std::path::Path;
-
-/// Relative tolerance of a given pixel size against that of the file.
-const SAME: f64 = 1e-3;
 
 /// A measured surface after all preprocessing steps.
 pub struct Imported {
@@ -243,7 +240,7 @@ fn same_size(params: &MeasuredSurface, length_m: f64, points: usize) -> Result<(
         ("size_y_m", params.size_y_m, length_m),
         ("pixel_m", params.pixel_m, pixel_m),
     ];
-    let differs = |(_, given, own): &&(&str, f64, f64)| *given > 0.0 && (given / own - 1.0).abs() > SAME;
+    let differs = |(_, given, own): &&(&str, f64, f64)| *given > 0.0 && (given / own - 1.0).abs() > SAME_SIZE;
     let why = match stated.iter().find(differs) {
         Some((name, given, own)) => {
             format!(
@@ -372,7 +369,7 @@ fn spacing(params: &MeasuredSurface, scan: &Scan) -> Result<[f64; 2], StageError
     let (x, y) = scan.heights.dim();
     let (key, option) = if params.size_m > 0.0 { ("size_m", "--size") } else { ("pixel_m", "--pixel-m") };
     let differs = |own: [f64; 2], given: [f64; 2]| {
-        own.iter().zip(given).any(|(own, given)| (own / given - 1.0).abs() > SAME)
+        own.iter().zip(given).any(|(own, given)| (own / given - 1.0).abs() > SAME_SIZE)
     };
     match (
         scan.size_m.map(|size| [size[0] / x as f64, size[1] / y as f64]),
@@ -389,7 +386,7 @@ fn spacing(params: &MeasuredSurface, scan: &Scan) -> Result<[f64; 2], StageError
         }
         (Some(own), ..) => Ok(own),
         // Positions whose unit is unknown: the statement gives their scale.
-        (None, Some([a, b]), Some([c, d])) if ((a / b) / (c / d) - 1.0).abs() > SAME => {
+        (None, Some([a, b]), Some([c, d])) if ((a / b) / (c / d) - 1.0).abs() > SAME_SIZE => {
             let why = format!(
                 "the pixel sizes along x and y are {a} and {b} in the file, but {c:.4e} m and {d:.4e} m by \
                  {key}\nhelp: remove {key} ({option}), or give both sizes (--size, for example \"5um x 3um\")"

@@ -246,7 +246,7 @@ def javascript(folder, python, run, surface):
         "steps": f"import pyarrow.parquet as q; c = q.read_table({str(steps)!r})['load_n'].to_pylist(); print([len(c), sum(c)])",
         "surface": f"import h5py; h = h5py.File({str(surface)!r})['height_m'][:]; print([h.size, float(abs(h).max())])",
     }
-    told = {name: json.loads(subprocess.run([python, "-c", code], check=True, capture_output=True, encoding="utf-8").stdout) for name, code in wanted.items()}
+    expected = {name: json.loads(subprocess.run([python, "-c", code], check=True, capture_output=True, encoding="utf-8").stdout) for name, code in wanted.items()}
     for name, what, path, field in (
         ("hyparquet", "tables (Parquet)", steps, "load_n"),
         ("h5wasm", "surfaces (HDF5)", surface, "height_m"),
@@ -258,7 +258,7 @@ def javascript(folder, python, run, surface):
             row(package.replace("@", " "), what, "no", "", "", found if isinstance(found, list) else found["error"])
             continue
         count, total = found["found"]
-        number, value = told["steps" if name == "hyparquet" else "surface"]
+        number, value = expected["steps" if name == "hyparquet" else "surface"]
         # The mean height is 0: its sum is rounding.
         same = count == number and (abs(total - value) <= 1e-12 * abs(value) if name == "hyparquet" else abs(total) < 1e-9 * number * value)
         row(package.replace("@", " "), what, "yes", "yes" if same else "no", "", "")

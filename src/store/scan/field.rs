@@ -13,10 +13,8 @@ use super::numbers::Number;
 use super::packing::Packing;
 use super::stated::{self, Pixel};
 use super::{Cause, FirstIndex, Scan, units};
-use crate::lengths::metres;
+use crate::lengths::{SAME_SIZE, metres};
 
-/// Relative difference of two statements of one size.
-const SAME: f64 = 1e-3;
 /// Deviation of a coordinate from even spacing, as a fraction of the spacing; single precision over 4096
 /// points gives 2e-4.
 const UNEVEN: f64 = 1e-2;
@@ -118,7 +116,7 @@ impl Axis {
         let stated = length / points as f64;
         // Coordinates in double precision are more precise than a length in single precision.
         Ok(Some(match spacing {
-            Some(value) if kind == Number::F32 && (value / stated - 1.0).abs() < SAME => {
+            Some(value) if kind == Number::F32 && (value / stated - 1.0).abs() < SAME_SIZE => {
                 Pixel { value, extent: value * points as f64, metres }
             }
             _ => Pixel { value: stated, extent: length, metres },
@@ -202,7 +200,7 @@ impl Field {
         }
         let Some((name, chosen)) = all.first().cloned() else { return Ok((None, Vec::new())) };
         let differs = |other: &[Pixel; 2]| {
-            chosen.iter().zip(other).any(|(a, b)| (a.size() / b.size() - 1.0).abs() > SAME)
+            chosen.iter().zip(other).any(|(a, b)| (a.size() / b.size() - 1.0).abs() > SAME_SIZE)
         };
         match all.iter().find(|(_, other)| differs(other)) {
             None => Ok((Some(chosen), Vec::new())),

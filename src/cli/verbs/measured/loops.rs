@@ -36,7 +36,7 @@ pub(super) fn import(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> 
 /// Evaluates several loops, each with a table of its own, and names the loops that fail.
 pub(super) fn import_all(asked: &ImportArguments) -> Result<u8, Fault> {
     if let Some(missing) = asked.files.iter().find(|file| !file.exists()) {
-        return Err(failed(format!("cannot read {}: no such file", shown(missing))));
+        return Err(failed(format!("cannot read {}: no such file\nhelp: check the path", shown(missing))));
     }
     let others: Vec<String> =
         asked.files.iter().filter(|file| !is_meant(asked, file)).map(|file| shown(file)).collect();

@@ -8,6 +8,7 @@ use super::several_text::{Shown, answer, text};
 use super::taken::Taken;
 use super::{ImportArguments, check_options};
 use crate::keys::digest_of_file;
+use crate::lengths::SAME_SIZE;
 use crate::model::MeasuredSurface;
 use crate::stages::{Examined, Imported, Sample, SampleScan, StageError, measure, scans_table};
 use crate::store::commit::commit_bytes;
@@ -91,16 +92,13 @@ fn measured(input: &Input, digest: &str) -> Result<Imported, StageError> {
     }
 }
 
-/// Relative difference of two sizes that are the same.
-const SAME: f64 = 1e-3;
-
 /// A size in the metadata of a container that differs from that of the file, as a warning.
 fn difference(input: &Input, imported: &Imported) -> Option<String> {
     let MeasuredSurface { size_m, size_y_m, transpose, .. } = input.stated.as_ref()?;
     let of = imported.header.measured.as_ref().filter(|_| imported.height_factor_m.is_some())?;
     let along = |k: usize| of.source_point_counts[k] as f64 * of.source_spacings_m[k];
     let [x, y] = if *transpose { [along(1), along(0)] } else { [along(0), along(1)] };
-    let differs = |stated: f64, own: f64| stated > 0.0 && (stated / own - 1.0).abs() > SAME;
+    let differs = |stated: f64, own: f64| stated > 0.0 && (stated / own - 1.0).abs() > SAME_SIZE;
     (differs(*size_m, x) || differs(*size_y_m, y)).then(|| {
         format!(
             "{}: a size of {size_m:.4e} m x {size_y_m:.4e} m in index.json, of {x:.4e} m x {y:.4e} m in the \

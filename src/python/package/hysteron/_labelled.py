@@ -25,8 +25,8 @@ def _attributes(description: Any) -> dict[str, str]:
     """Attributes of a variable from the description of its column."""
     if description is None:
         return {}
-    told = {"long_name": description.description, "units": description.unit}
-    return {name: value for name, value in told.items() if value is not None}
+    attributes = {"long_name": description.description, "units": description.unit}
+    return {name: value for name, value in attributes.items() if value is not None}
 
 
 def results(table: pa.Table, described: Mapping[str, Any]) -> Any:
