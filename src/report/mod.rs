@@ -13,6 +13,7 @@ mod layout;
 mod live;
 mod methods;
 mod numbers;
+mod paragraph;
 mod results;
 mod scans;
 mod single_cycle;
@@ -37,9 +38,9 @@ use crate::store::Frame;
 use crate::store::hdf5::SurfaceHeader;
 use crate::text::counted;
 use cases::Cases;
-use data::Study;
 use layout::{Numbers, document, grids, heading, legend, prose, switch};
 use maud::{Markup, PreEscaped, html};
+use paragraph::Study;
 
 /// Content of the report of a run.
 #[derive(Debug, Clone, Copy)]
@@ -162,7 +163,7 @@ fn provenance(report: &Report<'_>, has_results: bool) -> Result<Markup, StatsErr
         p { (introduction(report)) } "\n"
         (header::facts(report.cases, report.seed, report.realizations_text)?)
         @if has_results {
-            (data::methods(report.cases, &study)?)
+            (paragraph::methods(report.cases, &study)?)
             (data::usage())
         }
         (data::citation(report.case_counts))
