@@ -48,6 +48,12 @@ impl ElementOptions {
         self.points.unwrap_or_else(automatic)
     }
 
+    /// The grid as text.
+    #[must_use]
+    pub fn grid_in_words(&self) -> String {
+        self.points.map_or_else(|| "automatic size".to_owned(), |points| format!("{points} points a side"))
+    }
+
     /// Range ρ of the Morse law \[m\], with `Δγ/E*` and the grid spacing \[m\]; nothing for the JKR limit.
     #[must_use]
     pub fn range(&self, work_length_m: f64, spacing_m: f64) -> Option<f64> {

@@ -53,6 +53,7 @@ pub use cycle::unload_again;
 pub use error::StageError;
 pub use estimates::Examined;
 pub use foreseen::{ARTEFACTS, Foreseen, Outside, foreseen};
+pub use grids::cycle_results;
 pub use measure::{Imported, measure, scan_side_m};
 pub use measured_loop::{MeasuredLoop, half_width, measure_loop};
 pub use outside::in_words;

@@ -5,11 +5,11 @@
 //! in `status`.
 
 use super::StageError;
-use super::cycle_input::cycle_input;
+use super::grids::cycle_results;
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::model::Choice;
 use crate::spec::Until;
-use crate::stats::{self, Sample, Value};
+use crate::stats::{Sample, Value};
 use crate::store::Check;
 use rayon::prelude::*;
 
@@ -87,7 +87,7 @@ fn count(campaign: &Campaign, case: usize, standings: &[Standing], until: &Until
 
 /// The chosen statistic of a finished cycle, at each load reversal.
 fn outcome(campaign: &Campaign, unit: &CycleUnit, until: &Until) -> Result<Vec<f64>, StageError> {
-    let results = stats::results(&cycle_input(campaign, unit)?)?;
+    let results = cycle_results(campaign, unit)?;
     let value = |(name, value): &(String, Value)| match value {
         Value::Real(value) if name == until.of.word() => Some(*value),
         _ => None,

@@ -1,7 +1,7 @@
 //! Warnings of a run with measured values, limits and rows.
 
 use super::cautions::{CAUTIONS, Caution, LIMITS, Limit};
-use super::{StatsError, significant};
+use super::{StatsError, grid_percent, significant};
 use crate::store::Frame;
 use crate::text::counted;
 
@@ -95,12 +95,12 @@ fn grid_errors(cases: &Frame, rows: &[usize]) -> Result<String, StatsError> {
     let mut parts = Vec::new();
     for (symbol, column) in [("Θ", "loss_grid_error"), ("F_po", "pull_off_grid_error")] {
         let errors = cases.f64_or_null(column)?;
-        let known = || rows.iter().filter_map(|row| errors[*row]).map(|error| 100.0 * error);
-        let [low, high] = [f64::min, f64::max]
-            .map(|pick: fn(f64, f64) -> f64| known().reduce(pick).map(|error| significant(error, 2)));
+        let known = || rows.iter().filter_map(|row| errors[*row]);
+        let [low, high] =
+            [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| known().reduce(pick).map(grid_percent));
         if let Some((low, high)) = low.zip(high) {
-            let range = if low == high { low } else { format!("{low} to {high}") };
-            parts.push(format!("{range}\u{a0}% of {symbol}"));
+            let range = if low == high { low } else { format!("{} to {high}", low.trim_end_matches(" %")) };
+            parts.push(format!("{range} of {symbol}").replace(" %", "\u{a0}%"));
         }
     }
     Ok(if parts.is_empty() { String::new() } else { format!("; grid error {}", parts.join(", ")) })
