@@ -17,6 +17,8 @@ use std::ops::Range;
 pub const MAX_ELEMENTS: u32 = 4096;
 /// Minimum number of grid points per shortest wavelength.
 pub const FEWEST_PER_WAVELENGTH: f64 = 4.0;
+/// Maximum of `points_per_wavelength`.
+pub const MOST_PER_WAVELENGTH: u32 = 256;
 /// Maximum mesh number `½ sqrt(Δγ dx/E*)/ρ` of a law with a range ρ: above, the grid traps the contact edges.
 pub const MOST_MESH_NUMBER: f64 = 0.7;
 /// Minimum `Δγ/(E* dx)`: below it, the tension is lost in the rounding of the pressure.

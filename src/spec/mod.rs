@@ -49,8 +49,8 @@ pub use crate::text::quoted;
 pub use auto::Chooser;
 pub use coarser::COARSER;
 pub use elements::{
-    FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, automatic_range, mesh_number,
-    shortest_lengths,
+    FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, MOST_PER_WAVELENGTH,
+    automatic_range, mesh_number, shortest_lengths,
 };
 pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};

@@ -80,6 +80,8 @@ pub struct CaseInput {
     /// A column of the table `realizations` for whose mean a precision is required, and the relative
     /// precision.
     pub precision: Option<(String, f64)>,
+    /// Required relative grid error of the mean dissipated energy.
+    pub grid_error_goal: Option<f64>,
     /// Number of realizations in the spec.
     pub planned_count: usize,
     /// Number of failed realizations.

@@ -212,7 +212,7 @@ fn e2e_a_failed_coarser_grid_is_a_warning() {
 fn e2e_a_list_of_grids_without_boundary_elements_has_no_effect() {
     let bench = Bench::new(&SPEC.replace("\"boundary_elements\"\n", "\"asperities\"\n"));
     for said in [stdout(&bench.verb("plan", &[])), stderr(&bench.verb("run", &["--until", "cycle"]))] {
-        assert!(said.contains("warning: no case uses boundary elements: the list"), "{said}");
+        assert!(said.contains("warning: no case uses boundary elements: a list of grids"), "{said}");
     }
     assert!(!stdout(&Bench::new(SPEC).verb("plan", &[])).contains("has no effect"));
 }

@@ -42,6 +42,7 @@ mod probe;
 mod profiles;
 #[cfg(feature = "stats")]
 mod python;
+mod refined;
 #[cfg(feature = "stats")]
 mod report;
 #[cfg(feature = "stats")]

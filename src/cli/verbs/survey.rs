@@ -9,7 +9,7 @@ use super::{Fault, failed, grids, probes, say, spectra, submit, verdicts};
 use crate::campaign::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::slurm::{Queue, Sent};
-use crate::stages::foreseen;
+use crate::stages::{above_error, foreseen};
 use crate::store::Check;
 use crate::text::{counted, shown, visible};
 use serde_json::{Value, json};
@@ -62,15 +62,18 @@ pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> 
         let slurm = Slurm::of(&campaign, &survey);
         let mut units = units(&campaign, survey);
         living.mark(&campaign, &mut units);
+        let above = if asked.json { String::new() } else { grids::above(&campaign)? };
         let mut text = if asked.json {
             let mut answer = answer(&campaign, &units);
+            answer["above_grid_error"] = above_json(&campaign)?;
             answer["processes"] = json!(living.alive);
             if let Some(of_slurm) = slurm.answer() {
                 answer["slurm"] = of_slurm;
             }
             format!("{answer:#}\n")
         } else {
-            describe(&campaign, &units, |stage, _| living.tasks(stage))
+            let further = |stage: Stage| if stage == Stage::Cycle { above.as_str() } else { "" };
+            describe(&campaign, &units, |stage, _| further(stage).to_owned() + &living.tasks(stage))
         };
         if !asked.json {
             if let Some(why) = campaign.spec_fault() {
@@ -205,6 +208,12 @@ impl Slurm {
             "ended": ended,
         }))
     }
+}
+
+/// Cases whose grid error remains above the required one, in JSON.
+fn above_json(campaign: &Campaign) -> Result<Value, Fault> {
+    let of_cases = above_error(campaign).map_err(failed)?;
+    Ok(of_cases.iter().map(|of| json!({ "case": of.case_id, "grid": of.grid, "error": of.error })).collect())
 }
 
 /// Pending tasks in a sentence, and failed ones.
