@@ -181,6 +181,10 @@ pub(super) fn first_grids(values: &mut Values, origins: &[Origin], faults: &mut 
     let (Some(span), Method::BoundaryElements) = (written(place(ERROR), origins), values.method) else {
         return Vec::new();
     };
+    // Refused by the check of the choice.
+    if LISTS.iter().any(|path| written(place(path), origins).is_some()) {
+        return Vec::new();
+    }
     let points = |number: u32, values: &mut Values| {
         values.elements.per_wavelength = Some(number);
         values.case().elements().and_then(|options| options.points)

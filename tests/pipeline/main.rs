@@ -42,6 +42,7 @@ mod probe;
 mod profiles;
 #[cfg(feature = "stats")]
 mod python;
+#[cfg(feature = "stats")]
 mod refined;
 #[cfg(feature = "stats")]
 mod report;

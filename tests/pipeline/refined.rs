@@ -118,10 +118,10 @@ fn val_choices_of_a_grid_exclude_one_another() {
 /// Each case has the grids that its error requires, and the results are those of the same list written by hand.
 #[test]
 fn e2e_grids_are_refined_until_the_error_is_reached() {
-    let wanted = 0.2;
+    let wanted = 0.3;
     let bench = Bench::new(&spec(&format!("boundary_elements.error = {wanted}\nboundary_elements.max_points = 256")));
-    let plan = stdout(&bench.verb("plan", &[]));
-    assert!(plan.contains("2 cases with 4 coarser grids") && plan.contains("grid error of Θ is at most 20 %, up to 256 points"), "{plan}");
+    let plan = stdout(&bench.verb("plan", &[])).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(plan.contains("2 cases with 4 coarser grids") && plan.contains("grid error of Θ is at most 30 %, up to 256 points"), "{plan}");
     let run = bench.verb("run", &[]);
     let said = stdout(&run);
     assert_eq!(code(&run), 0, "{said}{}", stderr(&run));
@@ -140,7 +140,7 @@ fn e2e_grids_are_refined_until_the_error_is_reached() {
     assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
     let written = fs::read_to_string(bench.out().join("campaign.toml")).unwrap();
     assert!(
-        written.contains("\nerror = 0.2\n") && written.contains("\nmax_points = 256\n") && !written.contains("\npoints = "),
+        written.contains("\nerror = 0.3\n") && written.contains("\nmax_points = 256\n") && !written.contains("\npoints = "),
         "{written}"
     );
     assert_eq!(read(&written), Spec::read(bench.spec()).unwrap());
@@ -165,7 +165,7 @@ fn e2e_an_error_that_is_not_reached_is_a_warning() {
     let run = bench.verb("run", &[]);
     let said = stdout(&run).split_whitespace().collect::<Vec<_>>().join(" ");
     assert_eq!(code(&run), 0, "{said}{}", stderr(&run));
-    assert!(said.contains("grid error too large") && said.contains("above the requested `boundary_elements.error`"), "{said}");
+    assert!(said.contains("warning[grid_error]: grid error too large") && said.contains(" % (grid) ± "), "{said}");
     let campaign = refined(&bench);
     assert_eq!(grids(&campaign, 4), [16, 32, 64]);
     let cases = statistics(&bench, &schema::CASES);
@@ -174,7 +174,7 @@ fn e2e_an_error_that_is_not_reached_is_a_warning() {
     assert!(status.contains(&format!("{}: grid error of Θ ", campaign.cases[0].id)), "{status}");
     assert!(status.contains("on 64 points a side, above the requested 0.5 %") && status.contains("Nothing is left to do."), "{status}");
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
-    assert!(page.contains("grid error too large"), "page");
+    assert!(page.contains("grid error too large") && page.contains("above the requested"), "page");
     // Further grids begin from the finished ones.
     let run = bench.verb("run", &["--set", "boundary_elements.max_points=128"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
@@ -189,7 +189,7 @@ fn e2e_refinement_is_resumed_from_any_state() {
     assert_eq!(code(&once.verb("run", &[])), 0);
     // A shard computes the known grids of its surfaces; the next one follows from both.
     for _ in 0..3 {
-        for shard in ["1/2", "2/2"] {
+        for shard in ["0/2", "1/2"] {
             let run = often.verb("run", &["--until", "cycle", "--shard", shard]);
             assert_eq!(code(&run), 0, "{}", stderr(&run));
         }
