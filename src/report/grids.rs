@@ -72,8 +72,8 @@ fn failures(failures: &[Failure]) -> Markup {
     let count: usize = failures.iter().map(|of| of.count).sum();
     html! {
         @if count > 0 {
-            p { (counted(count, "cycle")) " on coarser grids failed: the errors follow from the other grids, or \
-                 are unknown." }
+            p { (counted(count, "cycle")) " on coarser grids failed: the errors follow from the other \
+                 grids, or are unknown." }
             "\n"
             @for of in failures {
                 p { (of.example) ": " (plain(&of.problem)) "." }

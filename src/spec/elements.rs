@@ -47,8 +47,8 @@ pub fn automatic_range(work_length_m: f64, spacing_m: f64) -> f64 {
 /// Grid points of the automatic grid per JKR radius of a probe at zero penetration.
 const POINTS_PER_RADIUS: f64 = 12.0;
 
-/// Shortest lengths of a case along a side \[m\] with a number of shortest wavelengths: these, or those of the
-/// probe, whose 12 points per JKR radius at zero penetration count as 16 per wavelength.
+/// Shortest lengths of a case along a side \[m\] with a number of shortest wavelengths: these, or those of
+/// the probe, whose 12 points per JKR radius at zero penetration count as 16 per wavelength.
 #[must_use]
 pub fn shortest_lengths(params: &CaseParams, length_m: f64, wavelengths: f64) -> f64 {
     let radius_m = |probe: &Probe| (2.0 * PI).cbrt() * probe.jkr_radius_m(&params.material);

@@ -28,8 +28,8 @@ pub struct AboveError {
     pub error: Option<f64>,
 }
 
-/// The campaign with the grids that its required grid error needs, as far as known: up to the first unfinished
-/// cycles of each case.
+/// The campaign with the grids that its required grid error needs, as far as known: up to the first
+/// unfinished cycles of each case.
 pub(super) fn refined(campaign: Campaign) -> Result<Campaign, StageError> {
     let Some(wanted) = campaign.spec.base.goal.error else { return Ok(campaign) };
     let mut campaign = campaign;

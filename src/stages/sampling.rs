@@ -48,8 +48,8 @@ fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
     (expected.min(2.0 * f64::from(now)).ceil() as u32).clamp(now + 1, until.max)
 }
 
-/// The campaign with the grids and the number of realizations of each case that its precision requires, as far
-/// as known: up to the first unfinished ones.
+/// The campaign with the grids and the number of realizations of each case that its precision requires, as
+/// far as known: up to the first unfinished ones.
 ///
 /// # Errors
 /// If the tables of a finished cycle cannot be read.

@@ -189,6 +189,13 @@ pub const CAUTIONS: [Caution; 29] = [
         "Rerun the spec with `hysteron run`.",
     ),
     warning(
+        GRID_ERROR,
+        "grid error too large",
+        "grid error of Θ {}, above the requested `boundary_elements.error`",
+        "The mean dissipated energy depends on the grid by more than requested.",
+        "Increase `boundary_elements.max_points`, or accept the larger error.",
+    ),
+    warning(
         "unconverged",
         "not converged",
         "output steps with a residual above the tolerance",
@@ -237,13 +244,6 @@ pub const CAUTIONS: [Caution; 29] = [
         "half-width of the 95 % confidence interval of the mean above the requested `until_relative_ci`",
         "The mean is less precise than requested.",
         "Increase `max` of `realizations`, or accept the wider interval.",
-    ),
-    warning(
-        GRID_ERROR,
-        "grid error too large",
-        "grid error of Θ {}, above the requested `boundary_elements.error`",
-        "The mean dissipated energy depends on the grid by more than requested.",
-        "Increase `boundary_elements.max_points`, or accept the larger error.",
     ),
 ];
 
@@ -376,6 +376,12 @@ fn shortest_step(case: &CaseInput) -> f64 {
         case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.number())
     };
     number("approach_step").unwrap_or_default() / number("halvings").unwrap_or_default().exp2()
+}
+
+/// The codes of a row with a further one, in the order of [`CAUTIONS`].
+pub(super) fn with_code(codes: &str, further: &str) -> String {
+    let has = |code: &&str| *code == further || codes.split('+').any(|known| known == *code);
+    CAUTIONS.iter().map(|known| known.code).filter(has).collect::<Vec<_>>().join("+")
 }
 
 /// Codes of the warnings of a row whose other columns are given, joined by `+`. The counts are those of the

@@ -5,7 +5,7 @@
 //! the means over the surfaces that all grids have: there, events that single surfaces skip on one grid
 //! average out.
 
-use super::cautions::GRID_ERROR;
+use super::cautions::{GRID_ERROR, with_code};
 use super::rows::Rows;
 use super::{CaseInput, Given, StatsError};
 use crate::schema::GRIDS;
@@ -124,12 +124,11 @@ fn filled(
 
 /// The table `cases` with the warning of a grid error above the required one in some rows.
 fn with_cautions(cases: &Frame, above: &[bool]) -> Result<Frame, StatsError> {
-    let codes = cases.text("caution")?.into_iter().zip(above).map(|(codes, is_above)| match codes {
-        codes if !is_above => codes.to_owned(),
-        "" => GRID_ERROR.to_owned(),
-        codes => format!("{codes}+{GRID_ERROR}"),
+    let codes = cases.text("caution")?.into_iter().zip(above);
+    let codes = codes.map(|(codes, is_above)| {
+        Some(if *is_above { with_code(codes, GRID_ERROR) } else { codes.to_owned() })
     });
-    let codes: Vec<Option<String>> = codes.map(Some).collect();
+    let codes: Vec<Option<String>> = codes.collect();
     let mut built = Frame::of(cases.table());
     for (column, data) in cases.columns() {
         let data = if column.name == "caution" { ColumnData::Text(codes.clone()) } else { data.clone() };

@@ -100,7 +100,7 @@ fn val_choices_of_a_grid_exclude_one_another() {
         ("boundary_elements.error = 0.1\nboundary_elements.points_per_wavelength = 8", &["exclude each other"]),
         ("boundary_elements.points_per_wavelength = 3", &["is 3: at least 4 are needed"]),
         ("boundary_elements.points_per_wavelength = [8, 4]", &["lists 4 after 8", "write points_per_wavelength = [4, 8]"]),
-        ("boundary_elements.error = 0.001", &["is 1e-3: the smallest estimate is 0.005"]),
+        ("boundary_elements.error = 0.001", &["is 0.001: the smallest estimate is 0.005"]),
         ("boundary_elements.error = 0.1\nboundary_elements.max_points = 16", &["needs two grids", "32 points a side", "max_points` is 16"]),
     ];
     for (lines, parts) in bad {
