@@ -11,13 +11,14 @@ use std::ops::Range;
 use toml::de::DeValue;
 
 use super::cases::Cases;
+use super::elements::AUTOMATIC;
 use super::fault::Faults;
 use super::keys::{KEYS, Key, find};
 use super::number::short;
 use super::probe::exclude;
 use super::walk::{Origin, written};
 use super::written::Written;
-use super::{Case, CaseParams, PER_WAVELENGTH, Spec, Value, Values, value};
+use super::{Case, CaseParams, Spec, Value, Values, value};
 use crate::model::{Method, MethodOptions};
 
 /// Sweep of cases that are only coarser grids of others. No sweep of a spec can have this name.
@@ -61,7 +62,7 @@ impl CaseParams {
             match &mut options.points {
                 Some(points) => *points *= 2,
                 None => {
-                    let number = options.per_wavelength.unwrap_or(PER_WAVELENGTH as u32);
+                    let number = options.per_wavelength.unwrap_or(AUTOMATIC);
                     options.per_wavelength = Some(2 * number);
                 }
             }

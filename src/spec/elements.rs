@@ -17,6 +17,8 @@ use std::ops::Range;
 pub const MAX_ELEMENTS: u32 = 4096;
 /// Minimum number of grid points per shortest wavelength.
 pub const FEWEST_PER_WAVELENGTH: f64 = 4.0;
+/// Grid points per shortest wavelength of the automatic grid.
+pub(super) const AUTOMATIC: u32 = PER_WAVELENGTH as u32;
 /// Maximum of `points_per_wavelength`.
 pub const MOST_PER_WAVELENGTH: u32 = 256;
 /// Maximum mesh number `½ sqrt(Δγ dx/E*)/ρ` of a law with a range ρ: above, the grid traps the contact edges.
@@ -70,7 +72,7 @@ pub(super) fn with_points(mut params: CaseParams) -> CaseParams {
         && let Some(number) = options.per_wavelength
     {
         options.points = wavelengths.map(|wavelengths| options.grid(wavelengths));
-        if options.points.is_some() || f64::from(number) == PER_WAVELENGTH {
+        if options.points.is_some() || number == AUTOMATIC {
             options.per_wavelength = None;
         }
     }
