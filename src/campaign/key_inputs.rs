@@ -126,6 +126,7 @@ impl Campaign {
             ("cases", F::list(cases.collect())),
             ("cycles", F::list(cycles.collect())),
         ];
+        members.extend(self.spec.base.goal.error.map(|error| ("grid_error", F::of(&json!(error)))));
         members.extend(self.loops_of_key().map(|loops| ("loops", F::of(&loops))));
         F::object(members)
     }

@@ -248,6 +248,23 @@ impl Campaign {
         self.cases.iter().filter(|unit| !unit.case.is_coarser_grid())
     }
 
+    /// True if a cycle is only a coarser grid of other cases.
+    #[must_use]
+    pub fn is_coarser_grid(&self, unit: &CycleUnit) -> bool {
+        self.cases[unit.case].case.is_coarser_grid()
+    }
+
+    /// Name of a cycle in messages: its id, and the grid of a coarser one.
+    #[must_use]
+    pub fn name_of(&self, unit: &CycleUnit) -> String {
+        let case = &self.cases[unit.case].case;
+        let grid = case.params.elements().filter(|_| case.is_coarser_grid());
+        grid.map_or_else(
+            || unit.id.clone(),
+            |of| format!("{} (coarser grid of {})", unit.id, of.grid_in_words()),
+        )
+    }
+
     /// Number of realizations of the cases, as in "6 realizations" or "6 to 14 realizations".
     #[must_use]
     pub fn realizations_in_words(&self) -> String {

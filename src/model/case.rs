@@ -133,8 +133,10 @@ pub struct AsperityOptions {
 /// Options of boundary elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementOptions {
-    /// Grid points along a side; nothing for the automatic grid.
+    /// Grid points along a side; nothing for a grid that follows from the shortest wavelength.
     pub points: Option<u32>,
+    /// Grid points per shortest wavelength of a measured surface, at least; nothing for the automatic number.
+    pub per_wavelength: Option<u32>,
     /// Attraction between the surfaces.
     pub attraction: Attraction,
     /// Step of the mean penetration, as a part of the rms height.
@@ -436,6 +438,7 @@ impl Default for ElementOptions {
     fn default() -> Self {
         Self {
             points: None,
+            per_wavelength: None,
             attraction: Attraction::default(),
             approach_step: 0.03,
             halvings: 6,

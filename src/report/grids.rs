@@ -1,11 +1,13 @@
 //! Part of the report: discretization errors of boundary elements.
 
 use super::cases::Cases;
+use super::failures::Failure;
 use super::layout::{Numbers, grid, heading, plain, prose, wide};
 use super::numbers::{Shown, scaled, shown};
 use crate::figures::Panel;
-use crate::stats::{Listed, StatsError, grid_help};
+use crate::stats::{Listed, StatsError, grid_help, grid_percent};
 use crate::store::Frame;
+use crate::text::counted;
 use maud::{Markup, html};
 
 /// Grids of the cases with their figures.
@@ -15,6 +17,8 @@ pub struct Grids {
     pub table: Frame,
     /// Results over the spacing of the grid, a panel for each of the first cases.
     pub panels: Vec<Panel>,
+    /// Failed cycles on coarser grids by reason.
+    pub failures: Vec<Failure>,
 }
 
 const NOTE: &str = "Estimated relative errors of results by boundary elements on the finest grid: contact \
@@ -23,9 +27,6 @@ const NOTE: &str = "Estimated relative errors of results by boundary elements on
     of safety of 1.25 for three grids and 2 for two. An avalanche that happens on finer grids only, next to \
     F_{max}, is not seen by it: compare several loads or surfaces. N: grid points per shortest wavelength, \
     of all grids. Extrapolated Θ: value on an infinitely fine grid, where three grids have a regular series.";
-
-/// Error above which it is not stated as a number: the grids disagree, as where contact is full on one only.
-const LARGEST: f64 = 1.0;
 
 /// Columns of errors with their heads.
 const ERRORS: [(&str, &str); 5] = [
@@ -45,7 +46,7 @@ pub(super) fn section(
     let help = grid_help(cases.frame, &(0..cases.frame.row_count()).collect::<Vec<_>>())?;
     let rows: Vec<Markup> =
         cases.rows().iter().map(|listed| row(of, cases, listed)).collect::<Result<Vec<_>, _>>()?.concat();
-    if rows.is_empty() && help.is_none() {
+    if rows.is_empty() && help.is_none() && of.failures.is_empty() {
         return Ok(None);
     }
     let head = html! {
@@ -61,16 +62,24 @@ pub(super) fn section(
             (wide("grid-error", &head, &rows))
             @if !of.panels.is_empty() { (grid(numbers, &of.panels)) }
         }
+        (failures(&of.failures))
         @if let Some(help) = &help { p { (plain(help)) "." } "\n" }
     }))
 }
 
-/// An error in percent, if it is a small enough number.
-fn limited(error: Option<f64>) -> Markup {
-    if error.is_some_and(|error| error > LARGEST) {
-        html! { "> 100 %" }
-    } else {
-        shown(error, Shown::Percent)
+/// Failed cycles on coarser grids.
+fn failures(failures: &[Failure]) -> Markup {
+    let count: usize = failures.iter().map(|of| of.count).sum();
+    html! {
+        @if count > 0 {
+            p { (counted(count, "cycle")) " on coarser grids failed: the errors follow from the other \
+                 grids, or are unknown." }
+            "\n"
+            @for of in failures {
+                p { (of.example) ": " (plain(&of.problem)) "." }
+                "\n"
+            }
+        }
     }
 }
 
@@ -95,7 +104,10 @@ fn row(of: &Grids, cases: &Cases<'_>, listed: &Listed) -> Result<Vec<Markup>, St
         td { (of.table.i64("surface_count")?[*last]) }
         td { (scaled(cases.number("loss_mean", listed.row)?, scale)) }
         @for error in errors {
-            td { (limited(error)) }
+            td { @match error {
+                Some(error) => (grid_percent(error)),
+                None => (shown(None, Shown::Percent)),
+            } }
         }
         td { (scaled(of.table.f64_or_null("loss_extrapolated")?[*last], scale)) }
     }])

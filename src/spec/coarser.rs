@@ -1,24 +1,43 @@
 //! Coarser grids of boundary elements, on which the loops of a case are repeated for its discretization
 //! error.
 //!
-//! `boundary_elements.points = [64, 128, 256]` outside of sweeps lists them: the finest grid gives the
-//! result. Each coarser grid is a case of its own, in the sweep [`COARSER`] alone, with the same surfaces.
+//! `boundary_elements.points = [64, 128, 256]` outside of sweeps lists them, or `points_per_wavelength = [4,
+//! 8, 16]`: the finest grid gives the result. Each coarser grid is a case of its own, in the sweep
+//! [`COARSER`] alone, with the same surfaces. `boundary_elements.error` begins with three grids and adds
+//! finer ones, see [`Spec::refined`].
 
 use std::ops::Range;
 
 use toml::de::DeValue;
 
+use super::cases::Cases;
+use super::elements::AUTOMATIC;
 use super::fault::Faults;
-use super::keys::{KEYS, find};
+use super::keys::{KEYS, Key, find};
+use super::number::short;
+use super::probe::exclude;
+use super::walk::{Origin, written};
 use super::written::Written;
-use super::{Case, CaseParams, Value, value};
-use crate::model::MethodOptions;
+use super::{Case, CaseParams, Spec, Value, Values, value};
+use crate::model::{Method, MethodOptions};
 
 /// Sweep of cases that are only coarser grids of others. No sweep of a spec can have this name.
 pub const COARSER: &str = "coarser grids";
 
-/// The key that takes a list of grids.
-pub(super) const KEY: &str = "boundary_elements.points";
+/// The keys that take a list of grids.
+pub(super) const LISTS: [&str; 2] = ["boundary_elements.points", "boundary_elements.points_per_wavelength"];
+
+/// The keys that choose the grid, of which a case has one.
+pub(super) const CHOICES: [&str; 3] = [LISTS[0], LISTS[1], ERROR];
+
+/// The key of a required grid error.
+pub(super) const ERROR: &str = "boundary_elements.error";
+
+/// Points per shortest wavelength of the first grids for a required grid error.
+const FIRST: [u32; 3] = [4, 8, 16];
+
+/// Smallest grid error that can be required: that of the estimate.
+const SMALLEST: f64 = 0.005;
 
 /// Largest number of grids in a list.
 pub(super) const MOST: usize = 6;
@@ -35,33 +54,50 @@ impl Case {
 }
 
 impl CaseParams {
+    /// The parameters with twice the grid points of boundary elements.
+    #[must_use]
+    pub fn on_finer_grid(&self) -> Self {
+        let mut params = self.clone();
+        if let MethodOptions::Elements(options) = &mut params.method {
+            match &mut options.points {
+                Some(points) => *points *= 2,
+                None => {
+                    let number = options.per_wavelength.unwrap_or(AUTOMATIC);
+                    options.per_wavelength = Some(2 * number);
+                }
+            }
+        }
+        params
+    }
+
     /// The parameters of a case by boundary elements without its number of grid points; nothing for other
     /// methods.
     #[must_use]
     pub fn on_any_grid(&self) -> Option<Self> {
         let mut params = self.clone();
         let MethodOptions::Elements(options) = &mut params.method else { return None };
-        options.points = None;
+        (options.points, options.per_wavelength) = (None, None);
         Some(params)
     }
 }
 
-/// Reads a list of grids: the finest one, and the coarser ones ascending.
-pub(super) fn grids(list: &Written<'_>, faults: &mut Faults<'_>) -> Option<(Value, Vec<Coarser>)> {
-    let (DeValue::Array(elements), Some(place)) = (list.get_ref(), key()) else { return None };
+/// Reads a list of grids of a key: the finest one, and the coarser ones ascending.
+pub(super) fn grids(key: &Key, list: &Written<'_>, faults: &mut Faults<'_>) -> Option<(Value, Vec<Coarser>)> {
+    let DeValue::Array(elements) = list.get_ref() else { return None };
+    let path = key.path;
     if elements.is_empty() || elements.len() > MOST {
         let message = if elements.is_empty() {
-            format!("`{KEY}` is empty: it lists the grids of each case")
+            format!("`{path}` is empty: it lists the grids of each case")
         } else {
-            format!("`{KEY}` lists {} grids: at most {MOST} are allowed", elements.len())
+            format!("`{path}` lists {} grids: at most {MOST} are allowed", elements.len())
         };
-        faults.add(&list.span(), message, example());
+        faults.add(&list.span(), message, example(key));
         return None;
     }
-    let read = |element: &Written<'_>| match value::read(&KEYS[place], element, faults)? {
+    let read = |element: &Written<'_>| match value::read(key, element, faults)? {
         Value::Count(0) => {
-            let message = format!("`{KEY}` cannot have 0 in a list: it chooses the grid");
-            faults.add(&element.span(), message, example());
+            let message = format!("`{path}` cannot have 0 in a list: it chooses the grid");
+            faults.add(&element.span(), message, example(key));
             None
         }
         Value::Count(points) => Some((points, element.span())),
@@ -75,19 +111,20 @@ pub(super) fn grids(list: &Written<'_>, faults: &mut Faults<'_>) -> Option<(Valu
         sorted.sort_unstable();
         sorted.dedup();
         let message = if before == points {
-            format!("`{KEY}` lists {points} twice")
+            format!("`{path}` lists {points} twice")
         } else {
-            format!("`{KEY}` lists {points} after {before}: grids must ascend, the finest last")
+            format!("`{path}` lists {points} after {before}: grids must ascend, the finest last")
         };
-        faults.add(span, message, format!("write points = {sorted:?}"));
+        faults.add(span, message, format!("write {} = {sorted:?}", key.name));
         return None;
     }
     let (finest, _) = grids.pop()?;
     Some((Value::Count(finest), grids))
 }
 
-fn example() -> String {
-    "write a number, or a list such as points = [64, 128, 256]".to_owned()
+fn example(key: &Key) -> String {
+    let list = if key.path == LISTS[0] { "[64, 128, 256]" } else { "[4, 8, 16]" };
+    format!("write a number, or a list such as {} = {list}", key.name)
 }
 
 /// The numbers of a list of grids.
@@ -95,7 +132,101 @@ pub(super) fn points_of(grids: &[Coarser]) -> Vec<u32> {
     grids.iter().map(|(points, _)| *points).collect()
 }
 
-/// Place of the key among all keys.
-pub(super) fn key() -> Option<usize> {
-    KEY.split_once('.').and_then(|(table, name)| find(table, name))
+/// Place of a key of [`CHOICES`] among all keys.
+pub(super) fn place(path: &str) -> Option<usize> {
+    path.split_once('.').and_then(|(table, name)| find(table, name))
+}
+
+/// Clears the other choices of a grid, where one of them is replaced.
+pub(super) fn clear_others(chosen: usize, others: &[&str], values: &mut Values, origins: &mut [Origin]) {
+    let default = Values::default();
+    for other in others.iter().filter_map(|path| place(path)).filter(|other| *other != chosen) {
+        let key = &KEYS[other];
+        (key.set)(values, &(key.get)(&default));
+        origins[other] = Origin::Default;
+    }
+}
+
+/// Checks the keys that choose the grid.
+pub(super) fn check_choice(
+    values: &Values,
+    (origins, swept): (&[Origin], &[usize]),
+    faults: &mut Faults<'_>,
+) {
+    let [points, number, error] = CHOICES;
+    for pair in [[points, number], [points, error], [number, error]] {
+        exclude(pair, "each of them chooses the grids: give one", origins, faults);
+    }
+    let at = |path: &str| written(place(path), origins);
+    for path in [ERROR, "boundary_elements.max_points"] {
+        if place(path).is_some_and(|key| swept.contains(&key))
+            && let Some(span) = at(path)
+        {
+            let message = format!("`{path}` cannot be swept: it holds for all cases");
+            faults.add(&span, message, "move it out of the [[sweep]]".to_owned());
+        }
+    }
+    if let (Some(few @ 1..=3), Some(span)) = (values.elements.per_wavelength, at(number)) {
+        let message = format!("`{number}` is {few}: at least 4 are needed");
+        faults.add(&span, message, "4 resolve the waves, 8 and more the events".to_owned());
+    }
+    if let (Some(small), Some(span)) = (values.goal.error.filter(|of| *of < SMALLEST), at(ERROR)) {
+        let message = format!("`{ERROR}` is {}: the smallest estimate is {SMALLEST}", short(small));
+        faults.add(&span, message, "write a larger error, such as 0.05 for 5 %".to_owned());
+    }
+}
+
+/// Sets the finest of the first grids of a case for a required grid error, and gives the coarser ones: those
+/// of [`FIRST`] up to the maximum. The grids of a scan are known after it is read.
+pub(super) fn first_grids(values: &mut Values, origins: &[Origin], faults: &mut Faults<'_>) -> Vec<Coarser> {
+    let (Some(span), Method::BoundaryElements) = (written(place(ERROR), origins), values.method) else {
+        return Vec::new();
+    };
+    // Refused by the check of the choice.
+    if LISTS.iter().any(|path| written(place(path), origins).is_some()) {
+        return Vec::new();
+    }
+    let points = |number: u32, values: &mut Values| {
+        values.elements.per_wavelength = Some(number);
+        values.case().elements().and_then(|options| options.points)
+    };
+    let mut grids: Vec<(u32, Option<u32>)> =
+        FIRST.iter().map(|number| (*number, points(*number, values))).collect();
+    let needed = grids[1].1;
+    grids.retain(|(_, points)| points.is_none_or(|points| points <= values.goal.max_points));
+    grids.dedup_by_key(|(number, points)| points.unwrap_or(*number));
+    if let [_] | [] = grids[..] {
+        let (most, needed) = (values.goal.max_points, needed.unwrap_or_default());
+        let message = format!(
+            "a grid error needs two grids, with 4 and 8 points per shortest wavelength: {needed} points a \
+             side, and `boundary_elements.max_points` is {most}"
+        );
+        faults.add(&span, message, "increase boundary_elements.max_points, or use a smaller ζ".to_owned());
+    }
+    let finest = grids.pop();
+    values.elements.per_wavelength = finest.map(|(number, _)| number);
+    grids.into_iter().map(|(number, _)| (number, span.clone())).collect()
+}
+
+impl Spec {
+    /// The spec with twice the grid points in some of its cases, by their places; their present grids are
+    /// coarser ones. Other cases keep their places.
+    #[must_use]
+    pub fn refined(&self, places: &[usize]) -> Self {
+        let (coarser, shown): (Vec<Case>, Vec<Case>) =
+            self.cases.iter().cloned().partition(Case::is_coarser_grid);
+        let (mut cases, mut all) = (Cases::default(), Vec::new());
+        for (place, mut case) in shown.into_iter().enumerate() {
+            let family = case.params.on_any_grid();
+            let own = coarser.iter().filter(|of| family.is_some() && of.params.on_any_grid() == family);
+            all.extend(own.map(|of| of.params.clone()));
+            if places.contains(&place) {
+                let finer = case.params.on_finer_grid();
+                all.push(std::mem::replace(&mut case.params, finer));
+            }
+            cases.add(&case.sweeps, case.params);
+        }
+        cases.add_coarser(all);
+        Self { cases: cases.list, ..self.clone() }
+    }
 }

@@ -44,9 +44,12 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             complete(&mut values, origins);
             sides.set(&mut values, &draft.files, draft.are_sides_read);
             let is_auto = choices.choose(&mut values);
+            coarser::check_choice(&values, (origins, swept), faults);
+            let first = coarser::first_grids(&mut values, origins, faults);
             let params = values.case();
             check(&params, &values, (origins, swept), faults);
-            coarser.extend(on_coarser(&coarser_grids, &values, (origins, swept), faults));
+            let grids = if values.goal.error.is_some() { &first } else { &coarser_grids };
+            coarser.extend(on_coarser(grids, &values, (origins, swept), faults));
             let case = cases.add(&[sweep.to_owned()], params);
             auto_cases.extend(Some(case).filter(|_| is_auto));
             sides.note(case, written(find("cycle", "max_force_n"), origins));
@@ -102,6 +105,9 @@ fn each_point(
         let swept: Vec<usize> = sweep.axes.iter().map(|axis| axis.key).collect();
         for point in points(&sweep.axes) {
             let (mut values, mut origins) = (base.clone(), of_base.to_vec());
+            for grid in swept.iter().filter(|key| coarser::LISTS.contains(&KEYS[**key].path)) {
+                coarser::clear_others(*grid, &coarser::LISTS, &mut values, &mut origins);
+            }
             for (axis, value) in sweep.axes.iter().zip(point) {
                 (KEYS[axis.key].set)(&mut values, value.get_ref());
                 origins[axis.key] = Origin::Written(value.span());
@@ -198,7 +204,10 @@ fn on_coarser(
     (origins, swept): (&[Origin], &[usize]),
     faults: &mut Faults<'_>,
 ) -> Vec<CaseParams> {
-    let Some(key) = coarser::key().filter(|key| !swept.contains(key)) else { return Vec::new() };
+    let [points, number] = coarser::LISTS.map(coarser::place);
+    let key = if values.elements.per_wavelength.is_some() { number } else { points };
+    let is_swept = [points, number].iter().flatten().any(|key| swept.contains(key));
+    let Some(key) = key.filter(|_| !is_swept) else { return Vec::new() };
     let mut found = Vec::new();
     // A case with a fault has no others.
     let grids = if faults.count() == 0 { grids } else { &[] };

@@ -11,7 +11,7 @@ use super::keys::{KEYS, Key, Kind, Limits, TABLES, words};
 use super::realizations::{DEFAULT, DEFAULT_BOUNDS, LEAST, PRECISION};
 use super::reference::described;
 use super::top::DEFAULT_SEED;
-use super::{MAX_ELEMENTS, MAX_REALIZATIONS, Values, coarser};
+use super::{MAX_REALIZATIONS, Values, coarser};
 use crate::lengths::LENGTH_PATTERN;
 use crate::model::{Choice, Goal};
 
@@ -125,10 +125,11 @@ fn key(key: &Key) -> Value {
 
 /// The value of a key outside of sweeps, which may be a list of grids.
 fn outside(of: &Key) -> Value {
-    if of.path != coarser::KEY {
+    let Kind::Count { high, .. } = &of.kind else { return key(of) };
+    if !coarser::LISTS.contains(&of.path) {
         return key(of);
     }
-    let grid = json!({ "type": "integer", "minimum": 1, "maximum": MAX_ELEMENTS });
+    let grid = json!({ "type": "integer", "minimum": 1, "maximum": high });
     let list = json!({
         "type": "array", "items": grid, "minItems": 1, "maxItems": coarser::MOST, "uniqueItems": true,
     });

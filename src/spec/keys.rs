@@ -325,6 +325,22 @@ pub(super) static KEYS: &[Key] = &[
          [64, 128, 256] takes the finest grid, and repeats each loop on the coarser ones for the \
          discretization error."; optional count to 4096,
         "grid points along a side; 0 for 16 points per shortest wavelength; at most 4096"),
+    key!(boundary_elements.points_per_wavelength in elements.per_wavelength, "", "Grid points per shortest \
+         wavelength of the roughness, or of the filter cut-off of a scan, instead of `points`: the grid of \
+         each case is the smallest power of two with as many, at most 4096. 12 points per JKR radius of a \
+         probe count as 16. Outside of sweeps a list such as [4, 8, 16] is a list of grids. 0: \
+         `points` holds."; optional count to 256,
+        "grid points per shortest wavelength, 4 to 256, instead of points; 0: not used"),
+    key!(boundary_elements.error in goal.error, "", "Relative grid error of the mean dissipated energy, \
+         instead of `points`: grids are doubled from 4, 8 and 16 points per shortest wavelength on until the \
+         estimated error of each case is at most this, or `max_points` is reached. 0: no such \
+         goal."; optional number Limits {
+        low: 0.0, above: false, high: 1.0, unit: "", unit_name: "", slip: None,
+        note: "relative grid error of Θ, 0.005 to 1; 0.05 is 5 %",
+    }),
+    key!(boundary_elements.max_points in goal.max_points, "", "Maximum number of grid points along a side \
+         with `error`."; count 16 to 4096, &[],
+        "grid points along a side, at most, with error; default 1024"),
     key!(boundary_elements.attraction in attraction, "", "Attraction between the surfaces.";
         word AttractionKind),
     key!(boundary_elements.range_m in range_m, "ρ", "Range of the Morse law with `attraction = \"range\"`. \
@@ -417,6 +433,9 @@ pub(super) const TABLES: [&str; 8] =
 pub const OPTIONAL_TABLES: [&str; 3] = ["probe", "machine", "substrate"];
 /// Keys of `[cycle]` for loads in other units, which are converted.
 pub const OTHER_LOADS: [&str; 2] = ["max_force_n", "max_pressure_pa"];
+
+/// Keys of `[boundary_elements]` that choose the grid instead of its points.
+pub const OTHER_GRIDS: [&str; 3] = ["points_per_wavelength", "error", "max_points"];
 
 /// Keys of `[surface]` that describe a measured surface.
 pub const MEASURED: [&str; 18] = [

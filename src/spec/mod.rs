@@ -49,17 +49,18 @@ pub use crate::text::quoted;
 pub use auto::Chooser;
 pub use coarser::COARSER;
 pub use elements::{
-    FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, automatic_range, mesh_number,
+    FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, MOST_PER_WAVELENGTH,
+    automatic_range, mesh_number, shortest_lengths,
 };
 pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};
 pub use json_schema::{SCHEMA_FILE, json_schema};
-pub use keys::{GENERATED, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, WHERE_USED};
+pub use keys::{GENERATED, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_GRIDS, OTHER_LOADS, REPLACED, WHERE_USED};
 pub use probe::{contact_radius_m, probe_refusal};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;
 pub use scan_sides::SideReader;
-pub use values::Values;
+pub use values::{GridGoal, Values};
 
 /// Limits of specs.
 pub const CONSTANTS: Constants = Constants {

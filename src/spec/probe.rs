@@ -53,7 +53,7 @@ pub(super) fn check_contact(case: &CaseParams, values: &Values, origins: &[Origi
 }
 
 /// Refuses a pair of keys that exclude each other.
-fn exclude(keys: [&str; 2], help: &str, origins: &[Origin], faults: &mut Faults<'_>) {
+pub(super) fn exclude(keys: [&str; 2], help: &str, origins: &[Origin], faults: &mut Faults<'_>) {
     let place = |path: &str| {
         let (table, name) = path.split_once('.')?;
         written(find(table, name), origins)

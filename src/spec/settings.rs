@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use toml::de::DeTable;
 
-use super::SpecErrors;
 use super::entries::entries;
 use super::fault::{Faults, OPTION, in_setting};
 use super::keys::{TABLES, find};
 use super::sweep::SweepDraft;
 use super::walk::{Draft, Origin, enter};
+use super::{SpecErrors, coarser};
 use crate::text::quoted;
 
 /// Puts the settings into a draft, in their order, and gives them as TOML.
@@ -70,6 +70,11 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
     }
     let path = text.split(" = ").next().unwrap_or_default();
     let place = path.split_once('.').and_then(|(table, name)| find(table, name));
+    if let Some(place) = place.filter(|_| coarser::CHOICES.contains(&path)) {
+        // A setting replaces lists and other choices of the grid.
+        draft.coarser.clear();
+        coarser::clear_others(place, &coarser::CHOICES, &mut draft.base, &mut draft.origins);
+    }
     for (key, span, written) in entries(root.get_ref()) {
         if matches!(key, "sweep" | "files" | "auto_methods" | "scan_sides_m")
             || TABLES.contains(&key) && !path.contains('.')

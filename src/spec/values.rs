@@ -1,7 +1,8 @@
 //! A value for each key of a spec, and the case that follows from them.
 
 use super::Value;
-use super::keys::{KEYS, Key, OPTIONAL_TABLES, OTHER_LOADS, TABLES};
+use super::elements::with_points;
+use super::keys::{KEYS, Key, OPTIONAL_TABLES, OTHER_GRIDS, OTHER_LOADS, TABLES};
 use crate::model::{
     AsperityOptions, Attraction, AttractionKind, CaseParams, Control, ElementOptions, FrontLaw,
     GeneratedSurface, LoadingPath, Machine, Material, MeasuredSurface, Method, MethodOptions, Nucleation,
@@ -27,6 +28,8 @@ pub struct Values {
     pub asperities: AsperityOptions,
     /// Keys of boundary elements but those of the attraction.
     pub elements: ElementOptions,
+    /// `boundary_elements.error` and `boundary_elements.max_points`.
+    pub goal: GridGoal,
     /// `boundary_elements.attraction`.
     pub attraction: AttractionKind,
     /// `boundary_elements.range_m`.
@@ -57,6 +60,21 @@ pub struct Values {
     pub side_m: Option<f64>,
 }
 
+/// Grid error that a spec requires.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridGoal {
+    /// Relative grid error of the mean dissipated energy.
+    pub error: Option<f64>,
+    /// Largest number of grid points along a side.
+    pub max_points: u32,
+}
+
+impl Default for GridGoal {
+    fn default() -> Self {
+        Self { error: None, max_points: 1024 }
+    }
+}
+
 impl Default for Values {
     fn default() -> Self {
         Self {
@@ -67,6 +85,7 @@ impl Default for Values {
             as_printed: Vec::new(),
             asperities: AsperityOptions::default(),
             elements: ElementOptions::default(),
+            goal: GridGoal::default(),
             attraction: AttractionKind::Bonded,
             range_m: None,
             nucleation: Nucleation::Touch,
@@ -117,7 +136,7 @@ impl Values {
         let is_spring = self.machine.control == Control::Displacement;
         let spring_m_n = self.stiffness_n_m.map_or(self.machine.compliance_m_n, f64::recip);
         let compliance_m_n = if is_spring { spring_m_n } else { 0.0 };
-        CaseParams {
+        with_points(CaseParams {
             surface,
             probe: self.radius_m.map(|radius_m| Probe { radius_m }),
             material: self.material,
@@ -126,7 +145,7 @@ impl Values {
             method,
             as_printed,
             cycle: LoadingPath { max_load: self.max_loads(), ..self.cycle.clone() },
-        }
+        })
     }
 
     /// Loads `F/(E* A0)` at the load reversals, from newtons or pascals if they are given in these.
@@ -228,7 +247,9 @@ impl Serialize for Values {
         let default = Self::default();
         let says = |key: &Key| (key.get)(self) != (key.get)(&default);
         let keys = |table: &'static str| KEYS.iter().filter(move |key| key.table == table);
-        let is_optional = |key: &Key| OTHER_LOADS.contains(&key.name) || key.name == "files";
+        let is_optional = |key: &Key| {
+            OTHER_LOADS.contains(&key.name) || OTHER_GRIDS.contains(&key.name) || key.name == "files"
+        };
         let is_shown = |key: &&Key| !is_optional(key) || says(key);
         let values = |table| {
             let shown = keys(table).filter(is_shown);

@@ -175,12 +175,8 @@ fn base(
 ) {
     for (place, _, written) in keys(table, written, span, faults) {
         let key = &KEYS[place];
-        if key.path == coarser::KEY {
-            // A setting replaces the whole list.
-            draft.coarser.clear();
-        }
-        let read = if key.path == coarser::KEY && written.get_ref().is_array() {
-            let grids = coarser::grids(written, faults);
+        let read = if coarser::LISTS.contains(&key.path) && written.get_ref().is_array() {
+            let grids = coarser::grids(key, written, faults);
             grids.map(|(finest, coarser)| {
                 draft.coarser = coarser;
                 finest

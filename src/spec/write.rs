@@ -3,7 +3,8 @@
 use std::fmt::{Error, Write as _};
 
 use super::keys::{
-    GENERATED, KEYS, Key, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, TABLES, WHERE_USED,
+    GENERATED, KEYS, Key, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_GRIDS, OTHER_LOADS, REPLACED, TABLES,
+    WHERE_USED,
 };
 use super::values::Values;
 use super::{Case, Spec, Value, coarser};
@@ -40,7 +41,7 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
         }
         for key in keys {
             let of_base = value(&(key.get)(&spec.base));
-            let of_base = if key.path == coarser::KEY && !spec.coarser_points.is_empty() {
+            let of_base = if coarser::LISTS.contains(&key.path) && !spec.coarser_points.is_empty() {
                 let coarser = spec.coarser_points.iter().map(u32::to_string);
                 format!("[{}]", list(coarser.chain([of_base])))
             } else {
@@ -85,6 +86,12 @@ fn is_read(key: &Key, base: &Values) -> bool {
         }
         "cycle" if OTHER_LOADS.contains(&key.name) => says(key),
         "cycle" if key.name == "max_load" => base.max_force_n.is_empty() && base.max_pressure_pa.is_empty(),
+        "boundary_elements" if key.name == "points" => {
+            base.elements.per_wavelength.is_none() && base.goal.error.is_none()
+        }
+        "boundary_elements" if OTHER_GRIDS.contains(&key.name) => {
+            says(key) || key.name == "max_points" && base.goal.error.is_some()
+        }
         table if OPTIONAL_TABLES.contains(&table) => {
             KEYS.iter().any(|other| other.table == table && says(other))
                 && (key.name != "compliance_m_n" || base.stiffness_n_m.is_none())

@@ -209,7 +209,8 @@ fn planned_cycles(campaign: &Campaign, standings: &[Standing]) -> Vec<Planned> {
     campaign.cycles.iter().zip(standings).map(row).collect()
 }
 
-fn case_input(
+/// Input of the aggregation from a case, by its number.
+pub(super) fn case_input(
     campaign: &Campaign,
     number: usize,
     unit: &CaseUnit,
@@ -253,6 +254,7 @@ fn case_input(
             .realizations
             .until()
             .map(|until| (until.of.word().to_owned(), until.until_relative_ci)),
+        grid_error_goal: campaign.spec.base.goal.error.filter(|_| params.elements().is_some()),
         planned_count: campaign.counts[number] as usize,
         failed_count: campaign.cycles.iter().zip(standings).filter(|pair| failed(*pair)).count(),
         surfaces: Vec::new(),

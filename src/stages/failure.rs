@@ -72,7 +72,9 @@ pub(super) fn report(
     if !is_of_a_case(error) {
         return Ok(());
     }
-    watch.notice(&format!("{id} failed: {error}"));
+    let own = cycles.iter().find(|cycle| cycle.id == id);
+    let name = own.map_or_else(|| id.to_owned(), |cycle| campaign.name_of(cycle));
+    watch.notice(&format!("{name} failed: {error}"));
     for cycle in cycles {
         match record(campaign, cycle, stage, error) {
             Err(why @ StageError::InTheWay { .. }) => {

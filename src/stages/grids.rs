@@ -1,12 +1,13 @@
 //! Discretization errors: the rule of an estimate, and for the report the table of grids and its figures.
 
 use super::StageError;
-use crate::campaign::Campaign;
+use super::cycle_input::cycle_input;
+use crate::campaign::{Campaign, CycleUnit};
 use crate::figures::{OfGrids, over_grids};
 use crate::physics::theory::grid_convergence::grid_error;
-use crate::report::Grids;
+use crate::report::{Failure, Grids};
 use crate::schema::GRIDS;
-use crate::stats::{GridEstimate, listing, loads};
+use crate::stats::{Given, GridEstimate, listing, loads, results};
 use crate::store::Frame;
 use crate::store::parquet::read_table;
 
@@ -19,9 +20,22 @@ pub(super) fn grid_rule(points: &[f64], values: &[f64]) -> Option<GridEstimate> 
     Some(GridEstimate { relative: found.relative, extrapolated: found.extrapolated })
 }
 
+/// Results of a finished cycle at each of its load reversals, with the load. Tables of results lack those of
+/// coarser grids.
+///
+/// # Errors
+/// If the tables of the cycle cannot be read.
+pub fn cycle_results(campaign: &Campaign, unit: &CycleUnit) -> Result<Vec<(f64, Given)>, StageError> {
+    Ok(results(&cycle_input(campaign, unit)?)?)
+}
+
 /// The table `grids` with a figure of each of the first cases, at its largest load; nothing if an earlier
 /// version of the program wrote the statistics.
-pub(super) fn grids(campaign: &Campaign, cases: &Frame) -> Result<Option<Grids>, StageError> {
+pub(super) fn grids(
+    campaign: &Campaign,
+    cases: &Frame,
+    failures: Vec<Failure>,
+) -> Result<Option<Grids>, StageError> {
     let path = campaign.statistics_path(GRIDS.name);
     if !path.is_file() {
         return Ok(None);
@@ -42,5 +56,5 @@ pub(super) fn grids(campaign: &Campaign, cases: &Frame) -> Result<Option<Grids>,
         let of = OfGrids { case_id: ids[row], max_load: max_loads[row], label: &label };
         panels.extend(over_grids(&table, &of, panels.len() + 1)?);
     }
-    Ok(Some(Grids { table, panels }))
+    Ok(Some(Grids { table, panels, failures }))
 }

@@ -9,12 +9,13 @@ use super::surface::Surfaces;
 use super::{StageError, Tally, Task, Watch, aggregate, cycle, report, sampled};
 use crate::campaign::{Campaign, Stage};
 use crate::store::{Check, commit};
+use crate::text::counted;
 
 /// Tallies of the stages, in their order.
 type Tallies = Vec<(Stage, Tally)>;
 
 /// Runs the stages of a task, in order. Failed units do not stop the others. If the spec requests a
-/// precision, realizations are added until it is reached; the returned campaign has all of them.
+/// precision, grids and realizations are added until it is reached; the returned campaign has all of them.
 ///
 /// # Errors
 /// A folder or file that cannot be written; for a single stage: missing inputs of that stage.
@@ -28,12 +29,17 @@ pub fn run(campaign: Campaign, task: &Task, watch: &dyn Watch) -> Result<(Campai
     let mut tallies = Tallies::new();
     loop {
         compute(Context { campaign: &campaign, task, watch }, &mut tallies)?;
-        let before = campaign.counts.clone();
+        let (before, grids) = (campaign.counts.clone(), campaign.cases.len());
         if task.from == Stage::Generate && task.until >= Stage::Cycle && task.shard.is_whole() {
             campaign = sampled(campaign)?;
         }
         if campaign.counts == before {
             break;
+        }
+        let finer = campaign.cases.len() - grids;
+        if finer > 0 {
+            watch.notice(&format!("grid error larger than requested: {}", counted(finer, "finer grid")));
+            continue;
         }
         let more: u32 = campaign.counts.iter().zip(&before).map(|(now, before)| now - before).sum();
         watch.notice(&format!("confidence interval wider than requested: {more} more realizations"));

@@ -82,7 +82,7 @@ impl Drawings {
             measured_loops: beside(campaign, standings, cases)?,
             scan_spectra: scan_spectra(campaign)?,
             works: works(campaign, cases)?,
-            grids: grids(campaign, cases)?,
+            grids: grids(campaign, cases, failures(campaign, standings, true))?,
         })
     }
 
@@ -186,8 +186,8 @@ fn page(
         case_counts: campaign.case_counts(),
         seed: campaign.spec.seed,
         realizations_text: &campaign.realizations_in_words(),
-        failures: &failures(campaign, standings),
-        cycle_count: campaign.distinct_cycles().len(),
+        failures: &failures(campaign, standings, false),
+        cycle_count: campaign.distinct_cycles().iter().filter(|unit| !campaign.is_coarser_grid(unit)).count(),
         cases: &statistics.cases,
         realizations: &statistics.realizations,
         methods: &statistics.methods,
@@ -235,11 +235,12 @@ fn words(text: &str) -> Vec<&str> {
     text.split_whitespace().filter(|word| !word.bytes().any(|byte| byte.is_ascii_digit())).collect()
 }
 
-/// Failed cycles by reason, the most frequent reason first.
-fn failures(campaign: &Campaign, standings: &[Standing]) -> Vec<Failure> {
+/// Failed cycles of the cases, or of their coarser grids, by reason, the most frequent reason first.
+fn failures(campaign: &Campaign, standings: &[Standing], of_coarser_grids: bool) -> Vec<Failure> {
     let mut found: Vec<Failure> = Vec::new();
     let mut seen = HashSet::new();
-    for (unit, standing) in campaign.cycles.iter().zip(standings) {
+    let cycles = campaign.cycles.iter().zip(standings);
+    for (unit, standing) in cycles.filter(|(unit, _)| campaign.is_coarser_grid(unit) == of_coarser_grids) {
         let Some([problem, help]) = campaign.failure_texts(unit, standing).filter(|_| seen.insert(&unit.key))
         else {
             continue;
@@ -247,7 +248,7 @@ fn failures(campaign: &Campaign, standings: &[Standing]) -> Vec<Failure> {
         // Reasons that differ in their numbers alone are one.
         match found.iter_mut().find(|of| of.help == help && words(&of.problem) == words(&problem)) {
             Some(of) => of.count += 1,
-            None => found.push(Failure { example: unit.id.clone(), count: 1, problem, help }),
+            None => found.push(Failure { example: campaign.name_of(unit), count: 1, problem, help }),
         }
     }
     found.sort_by_key(|of| Reverse(of.count));

@@ -5,11 +5,12 @@
 //! in `status`.
 
 use super::StageError;
-use super::cycle_input::cycle_input;
+use super::grids::cycle_results;
+use super::refining::refined;
 use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::model::Choice;
 use crate::spec::Until;
-use crate::stats::{self, Sample, Value};
+use crate::stats::{Sample, Value};
 use crate::store::Check;
 use rayon::prelude::*;
 
@@ -47,14 +48,14 @@ fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
     (expected.min(2.0 * f64::from(now)).ceil() as u32).clamp(now + 1, until.max)
 }
 
-/// The campaign with the number of realizations of each case that its precision requires, as far as known: up
-/// to the first unfinished ones.
+/// The campaign with the grids and the number of realizations of each case that its precision requires, as
+/// far as known: up to the first unfinished ones.
 ///
 /// # Errors
 /// If the tables of a finished cycle cannot be read.
 pub fn sampled(campaign: Campaign) -> Result<Campaign, StageError> {
+    let mut campaign = refined(campaign)?;
     let Some(until) = campaign.spec.realizations.until() else { return Ok(campaign) };
-    let mut campaign = campaign;
     loop {
         let standings = campaign.cycle_standings(Check::Sizes);
         let counts: Vec<u32> = (0..campaign.cases.len())
@@ -87,7 +88,7 @@ fn count(campaign: &Campaign, case: usize, standings: &[Standing], until: &Until
 
 /// The chosen statistic of a finished cycle, at each load reversal.
 fn outcome(campaign: &Campaign, unit: &CycleUnit, until: &Until) -> Result<Vec<f64>, StageError> {
-    let results = stats::results(&cycle_input(campaign, unit)?)?;
+    let results = cycle_results(campaign, unit)?;
     let value = |(name, value): &(String, Value)| match value {
         Value::Real(value) if name == until.of.word() => Some(*value),
         _ => None,

@@ -32,7 +32,7 @@ const fn warning(
 /// All warnings by severity, which is the order of their codes in the column `caution`: results outside the
 /// model, then results that depend on a rule of the model, then incomplete or inaccurate results, then small
 /// samples.
-pub const CAUTIONS: [Caution; 28] = [
+pub const CAUTIONS: [Caution; 29] = [
     warning(
         "sticky",
         "near full contact",
@@ -189,6 +189,13 @@ pub const CAUTIONS: [Caution; 28] = [
         "Rerun the spec with `hysteron run`.",
     ),
     warning(
+        GRID_ERROR,
+        "grid error too large",
+        "grid error of Θ {}, above the requested `boundary_elements.error`",
+        "The mean dissipated energy depends on the grid by more than requested.",
+        "Increase `boundary_elements.max_points`, or accept the larger error.",
+    ),
+    warning(
         "unconverged",
         "not converged",
         "output steps with a residual above the tolerance",
@@ -239,6 +246,9 @@ pub const CAUTIONS: [Caution; 28] = [
         "Increase `max` of `realizations`, or accept the wider interval.",
     ),
 ];
+
+/// Code of the warning of a grid error above the required one.
+pub(super) const GRID_ERROR: &str = "grid_error";
 
 /// Warning of a plan, and of no finished case.
 pub const MANY_STEPS: Caution = warning(
@@ -336,6 +346,7 @@ pub fn condition(code: &str) -> Option<&'static str> {
         "unconverged" => Some("`unconverged_count` of `realizations` > 0"),
         "single" => Some("`done_count` = 1"),
         "imprecise" => Some("half-width of the interval > the requested share of the mean"),
+        GRID_ERROR => Some("`loss_grid_error` > the requested `boundary_elements.error`, or null"),
         _ => None,
     }
 }
@@ -365,6 +376,12 @@ fn shortest_step(case: &CaseInput) -> f64 {
         case.parameters.iter().find(|(name, _)| name == column).and_then(|(_, value)| value.number())
     };
     number("approach_step").unwrap_or_default() / number("halvings").unwrap_or_default().exp2()
+}
+
+/// The codes of a row with a further one, in the order of [`CAUTIONS`].
+pub(super) fn with_code(codes: &str, further: &str) -> String {
+    let has = |code: &&str| *code == further || codes.split('+').any(|known| known == *code);
+    CAUTIONS.iter().map(|known| known.code).filter(has).collect::<Vec<_>>().join("+")
 }
 
 /// Codes of the warnings of a row whose other columns are given, joined by `+`. The counts are those of the

@@ -5,6 +5,7 @@
 //! the means over the surfaces that all grids have: there, events that single surfaces skip on one grid
 //! average out.
 
+use super::cautions::{GRID_ERROR, with_code};
 use super::rows::Rows;
 use super::{CaseInput, Given, StatsError};
 use crate::schema::GRIDS;
@@ -31,6 +32,9 @@ pub const QUANTITIES: [(&str, &str); 5] = [
     ("dissipated_loading", "loading"),
     ("dissipated_unloading", "unloading"),
 ];
+
+/// Place of the dissipated energy among [`QUANTITIES`].
+const LOSS: usize = 2;
 
 /// Column of the table `cases` with the number of surfaces behind the errors of means.
 const SURFACES: &str = "grid_surface_count";
@@ -68,9 +72,13 @@ pub fn with_grid_errors(
         inputs.iter().map(|case| (case.case_id.as_str(), case)).collect();
     let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
     let (mut of_cases, mut surfaces, mut grids) = (Vec::new(), Vec::new(), Rows::of(&GRIDS));
+    let mut above = Vec::new();
     for (id, load) in ids.iter().zip(&loads) {
         let series = by_case.get(id).map(|case| loops.series(case, *load)).unwrap_or_default();
-        of_cases.push(series.last().map(|grid| grid.errors(rule)).unwrap_or_default());
+        let errors = series.last().map(|grid| grid.errors(rule)).unwrap_or_default();
+        let goal = by_case.get(id).and_then(|case| case.grid_error_goal);
+        above.push(goal.is_some_and(|goal| errors[LOSS].is_none_or(|error| error > goal)));
+        of_cases.push(errors);
         let is_series = series.len() > 1 && !hidden.contains(id);
         surfaces.push(series.last().filter(|_| is_series).map(|grid| grid.surface_count as i64));
         if is_series {
@@ -79,9 +87,10 @@ pub fn with_grid_errors(
             }
         }
     }
+    let cases = with_cautions(cases, &above)?;
     Ok(WithGridErrors {
         realizations: filled(realizations, (&of_loops.collect::<Vec<_>>(), &[]), &hidden)?,
-        cases: filled(cases, (&of_cases, &surfaces), &hidden)?,
+        cases: filled(&cases, (&of_cases, &surfaces), &hidden)?,
         grids: grids.build()?,
     })
 }
@@ -108,6 +117,21 @@ fn filled(
             (None, ColumnData::Bool(values)) => ColumnData::Bool(picked(values, &kept)),
             (None, ColumnData::Text(values)) => ColumnData::Text(picked(values, &kept)),
         };
+        built = built.with(column.name, data);
+    }
+    Ok(built.build()?)
+}
+
+/// The table `cases` with the warning of a grid error above the required one in some rows.
+fn with_cautions(cases: &Frame, above: &[bool]) -> Result<Frame, StatsError> {
+    let codes = cases.text("caution")?.into_iter().zip(above);
+    let codes = codes.map(|(codes, is_above)| {
+        Some(if *is_above { with_code(codes, GRID_ERROR) } else { codes.to_owned() })
+    });
+    let codes: Vec<Option<String>> = codes.collect();
+    let mut built = Frame::of(cases.table());
+    for (column, data) in cases.columns() {
+        let data = if column.name == "caution" { ColumnData::Text(codes.clone()) } else { data.clone() };
         built = built.with(column.name, data);
     }
     Ok(built.build()?)
@@ -223,7 +247,7 @@ impl<'a> Loops<'a> {
                 case_id: self.case_ids[rows[0]],
                 points,
                 values,
-                surface_count: common[2].len(),
+                surface_count: common[LOSS].len(),
             });
         }
         series

@@ -51,7 +51,7 @@ impl<'a> Columns<'a> {
         // Surfaces that a coarser grid lacks are in the mean and not in the error.
         let fewer = self.of_grids[row].filter(|of| *of < self.done[row]);
         let grid = fewer.map_or_else(|| "grid".to_owned(), |of| format!("grid, {}", count(of)));
-        Some(format!("Θ = {} ± {} ({grid}){of_surfaces}", number(mean), percent(error)))
+        Some(format!("Θ = {} ± {} ({grid}){of_surfaces}", number(mean), grid_percent(error)))
     }
 }
 
@@ -96,10 +96,19 @@ pub(super) fn lines(cases: &Frame, rows: &[Listed], loads: &[String]) -> Result<
     Ok(all)
 }
 
-/// A share in percent with two digits below 10 %, and at most 1000 %.
+/// Grid error above which it is not stated as a number: the grids disagree, as where contact is full on one
+/// only.
+const LARGEST: f64 = 1.0;
+
+/// A relative grid error in percent with two digits, and at most 100 %: `3.1 %`, `> 100 %`.
+#[must_use]
+pub fn grid_percent(error: f64) -> String {
+    if error > LARGEST { "> 100 %".to_owned() } else { percent(error) }
+}
+
+/// A share in percent with two digits.
 fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    if percent > 1000.0 { "1000 % or more".to_owned() } else { format!("{} %", significant(percent, 2)) }
+    format!("{} %", significant(100.0 * share, 2))
 }
 
 /// A number with three digits and its exponent: 1.46e-3.

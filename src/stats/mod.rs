@@ -42,7 +42,7 @@ pub use curves::curves;
 pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};
 pub use findings::{FINDINGS, Judged, Reading, Verdict, findings};
 pub use grid_error::{GridEstimate, GridRule, WithGridErrors, with_grid_errors};
-pub use grid_verdict::{grid_help, grid_verdict};
+pub use grid_verdict::{grid_help, grid_percent, grid_verdict};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
 pub use loads::{load_in_words, loads};
 pub use methods::{MethodPair, method_pairs, methods, methods_summary, names_of_pairs};
@@ -80,6 +80,8 @@ pub struct CaseInput {
     /// A column of the table `realizations` for whose mean a precision is required, and the relative
     /// precision.
     pub precision: Option<(String, f64)>,
+    /// Required relative grid error of the mean dissipated energy.
+    pub grid_error_goal: Option<f64>,
     /// Number of realizations in the spec.
     pub planned_count: usize,
     /// Number of failed realizations.

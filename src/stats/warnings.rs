@@ -1,7 +1,7 @@
 //! Warnings of a run with measured values, limits and rows.
 
-use super::cautions::{CAUTIONS, Caution, LIMITS, Limit};
-use super::{StatsError, significant};
+use super::cautions::{CAUTIONS, Caution, GRID_ERROR, LIMITS, Limit};
+use super::{StatsError, grid_percent, significant};
 use crate::store::Frame;
 use crate::text::counted;
 
@@ -76,6 +76,12 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
             &format!("{unreached} of {}", counted(usize::try_from(all).unwrap_or_default(), "loop")),
         ));
     }
+    if kind.code == GRID_ERROR {
+        let range = range_of_errors(cases, "loss_grid_error", rows)?;
+        return Ok(kind
+            .text
+            .replace("{}", &range.map_or_else(|| "is unknown".to_owned(), |of| format!("= {of}"))));
+    }
     if kind.code != "incomplete" {
         let all = counted(usize::try_from(total(&planned)).unwrap_or_default(), "realization");
         return Ok(kind.text.replace("{}", &format!("{} of {all}", total(&failed))));
@@ -94,16 +100,21 @@ fn measured(cases: &Frame, kind: &Caution, rows: &[usize]) -> Result<String, Sta
 fn grid_errors(cases: &Frame, rows: &[usize]) -> Result<String, StatsError> {
     let mut parts = Vec::new();
     for (symbol, column) in [("Θ", "loss_grid_error"), ("F_po", "pull_off_grid_error")] {
-        let errors = cases.f64_or_null(column)?;
-        let known = || rows.iter().filter_map(|row| errors[*row]).map(|error| 100.0 * error);
-        let [low, high] = [f64::min, f64::max]
-            .map(|pick: fn(f64, f64) -> f64| known().reduce(pick).map(|error| significant(error, 2)));
-        if let Some((low, high)) = low.zip(high) {
-            let range = if low == high { low } else { format!("{low} to {high}") };
-            parts.push(format!("{range}\u{a0}% of {symbol}"));
-        }
+        parts.extend(range_of_errors(cases, column, rows)?.map(|range| format!("{range} of {symbol}")));
     }
     Ok(if parts.is_empty() { String::new() } else { format!("; grid error {}", parts.join(", ")) })
+}
+
+/// Smallest and largest grid error of rows; nothing where all are unknown.
+fn range_of_errors(cases: &Frame, column: &str, rows: &[usize]) -> Result<Option<String>, StatsError> {
+    let errors = cases.f64_or_null(column)?;
+    let known = || rows.iter().filter_map(|row| errors[*row]);
+    let [low, high] =
+        [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| known().reduce(pick).map(grid_percent));
+    let range = |(low, high): (String, String)| {
+        if low == high { low } else { format!("{} to {high}", low.trim_end_matches(" %")) }
+    };
+    Ok(low.zip(high).map(range).map(|range| range.replace(" %", "\u{a0}%")))
 }
 
 /// Measured values of a warning with their limit: `A/A₀ = 31 to 35 % (limit 30 %)`.

@@ -161,3 +161,58 @@ fn e2e_errors_of_fewer_surfaces_say_so() {
     let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("% (grid, two surfaces) ±") && words.contains("% (three surfaces)"), "{said}");
 }
+
+/// A failed loop on a coarser grid leaves the results intact: exit code 0, a warning with the grid, and no failed cycle of the case.
+#[test]
+fn e2e_a_failed_coarser_grid_is_a_warning() {
+    let spec = SPEC.replace("realizations = 2", "realizations = 1").replace("[0.002, 0.004]", "[0.004]");
+    let bench = Bench::new(&spec);
+    let coarser = |bench: &Bench| {
+        let of = campaign(bench);
+        of.cycles.iter().find(|unit| of.is_coarser_grid(unit)).map(|unit| unit.id.clone()).unwrap()
+    };
+    let id = coarser(&bench);
+    let in_the_way = bench.out().join("cycles").join(&id).join("steps.parquet");
+    fs::create_dir_all(&in_the_way).unwrap();
+    let run = bench.verb("run", &[]);
+    let said = stdout(&run);
+    assert_eq!(code(&run), 0, "{said}{}", stderr(&run));
+    let named = format!("{id} (coarser grid of 16 points a side)");
+    assert!(stderr(&run).contains(&format!("{named} failed: ")), "{}", stderr(&run));
+    assert!(said.contains("warning: 1 cycle on coarser grids failed: results are complete") && said.contains(&named), "{said}");
+    assert!(!said.contains("1 cycle failed.") && said.contains("% (grid)"), "{said}");
+    let status = stdout(&bench.look("status", &[]));
+    assert!(status.contains(&format!("{named} failed")) && status.contains("All other tasks are done.\n"), "{status}");
+    assert!(status.contains("warning: 1 cycle on coarser grids failed") && !status.contains("1 cycle failed."), "{status}");
+    assert_eq!(statistics(&bench, &schema::CASES).i64("failed_count").unwrap()[0], 0);
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    assert!(page.contains("1 cycle on coarser grids failed") && page.contains(&named) && !page.contains("banner red"), "page");
+    let json: serde_json::Value = serde_json::from_str(&stdout(&bench.verb("run", &["--json"]))).unwrap();
+    assert_eq!((&json["failures"][0]["coarser_grid"], &json["failures"][0]["id"]), (&true.into(), &id.clone().into()));
+    // Without the folder in the way it is computed, and shown as what it is.
+    fs::remove_dir(&in_the_way).unwrap();
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let shown = stdout(&bench.look("show", &[&id]));
+    assert!(shown.contains("; coarser grid H") && shown.contains("\n  loss = ") && shown.contains("pull_off_load = "), "{shown}");
+    let of = campaign(&bench);
+    let hidden: Vec<&str> = of.cases.iter().filter(|unit| unit.case.is_coarser_grid()).map(|unit| unit.id.as_str()).collect();
+    let shown = stdout(&bench.look("show", &[hidden[1]]));
+    let words = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains(&format!("for the grid error of case {}", of.cases[0].id)) && shown.starts_with("coarser grid "), "{shown}");
+    assert!(shown.contains("\n  loss = ") && shown.contains("\n  loss_grid_error = "), "{shown}");
+    let case = stdout(&bench.look("show", &[&of.cases[0].id]));
+    for error in ERRORS {
+        let line = case.lines().find(|line| line.starts_with(&format!("  {error}_grid_error = "))).unwrap_or_else(|| panic!("{case}"));
+        assert!(line.ends_with(" %"), "{line}");
+    }
+}
+
+/// A list of grids that no case reads is announced.
+#[test]
+fn e2e_a_list_of_grids_without_boundary_elements_has_no_effect() {
+    let bench = Bench::new(&SPEC.replace("\"boundary_elements\"\n", "\"asperities\"\n"));
+    for said in [stdout(&bench.verb("plan", &[])), stderr(&bench.verb("run", &["--until", "cycle"]))] {
+        assert!(said.contains("warning: no case uses boundary elements: a list of grids"), "{said}");
+    }
+    assert!(!stdout(&Bench::new(SPEC).verb("plan", &[])).contains("has no effect"));
+}

@@ -14,9 +14,9 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use hysteron::campaign::Campaign;
 use hysteron::cli::{Arguments, generated};
-use hysteron::model::MeasuredSurface;
+use hysteron::model::{ElementOptions, MeasuredSurface};
 use hysteron::schema::TABLES;
-use hysteron::spec::{OTHER_LOADS, Spec, Values, reference};
+use hysteron::spec::{GridGoal, OTHER_GRIDS, OTHER_LOADS, Spec, Values, reference};
 use serde_json::{Value, json};
 
 use crate::bench::{code, stderr, stdout};
@@ -33,6 +33,8 @@ fn keys() -> BTreeSet<String> {
         max_force_n: vec![1.0],
         measured: MeasuredSurface { files: vec!["a".to_owned()], ..MeasuredSurface::default() },
         max_pressure_pa: vec![1.0],
+        elements: ElementOptions { per_wavelength: Some(8), ..ElementOptions::default() },
+        goal: GridGoal { error: Some(0.1), max_points: 64 },
         ..Values::default()
     };
     let tables = serde_json::to_value(values).unwrap();
@@ -209,6 +211,8 @@ fn law_the_stage_of_a_key_reads_it() {
         // Of a file, its content is read.
         let pointer = if ["surface.file", "surface.files", "surface.spectrum"].contains(&path.as_str()) {
             "/reads/surface/blake3".to_owned()
+        } else if OTHER_GRIDS.contains(&path.trim_start_matches("boundary_elements.")) {
+            "/reads/boundary_elements/points".to_owned()
         } else if OTHER_LOADS.contains(&path.trim_start_matches("cycle.")) {
             "/reads/cycle/max_load".to_owned()
         } else {

@@ -43,6 +43,8 @@ mod profiles;
 #[cfg(feature = "stats")]
 mod python;
 #[cfg(feature = "stats")]
+mod refined;
+#[cfg(feature = "stats")]
 mod report;
 #[cfg(feature = "stats")]
 mod reversals;

@@ -35,7 +35,7 @@ fn errors_in(rendered: &str) -> usize {
 }
 
 /// The one fault of a text, rendered.
-fn refused(text: &str) -> String {
+pub fn refused(text: &str) -> String {
     let rendered = Spec::parse(text, "x.toml").expect_err(text).to_string();
     assert_eq!(errors_in(&rendered), 1, "{text}\n{rendered}");
     rendered

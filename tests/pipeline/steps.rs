@@ -152,6 +152,7 @@ pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[
         max_loads: max_loads.to_vec(),
         load_unit: "1",
         precision: None,
+        grid_error_goal: None,
         planned_count: 6,
         failed_count: 0,
         surfaces: Vec::new(),

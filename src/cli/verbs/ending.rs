@@ -23,12 +23,29 @@ pub(super) struct Ended<'a> {
     tallies: &'a [(Stage, Tally)],
     time: Duration,
     size_bytes: u64,
-    /// Failed cycles; if a surface failed, all its cycles did.
-    pub(super) failed_count: usize,
-    /// Failed tasks with their reasons.
-    failures: Vec<(String, String)>,
-    /// Finished cycles with loads that have no result, with the load and the error.
-    unreached: Vec<(String, f64, String)>,
+    /// Failed cycles without those of coarser grids; if a surface failed, all its cycles did.
+    failed_count: usize,
+    /// Failed tasks.
+    failures: Vec<Failed>,
+    /// Loads of finished cycles that have no result.
+    unreached: Vec<Unreached>,
+}
+
+/// A failed cycle.
+struct Failed {
+    id: String,
+    name: String,
+    is_coarser_grid: bool,
+    why: String,
+}
+
+/// A load of a finished cycle without a result.
+struct Unreached {
+    id: String,
+    name: String,
+    is_coarser_grid: bool,
+    max_load: f64,
+    why: String,
 }
 
 impl<'a> Ended<'a> {
@@ -38,8 +55,11 @@ impl<'a> Ended<'a> {
         tallies: &'a [(Stage, Tally)],
         time: Duration,
     ) -> Self {
-        let failed_count = tallies.iter().map(|(_, tally)| tally.failed).max().unwrap_or(0);
-        let failures = if failed_count > 0 { failures(campaign, shard) } else { Vec::new() };
+        let of_tasks = tallies.iter().map(|(_, tally)| tally.failed).max().unwrap_or(0);
+        let failures = if of_tasks > 0 { failures(campaign, shard) } else { Vec::new() };
+        let coarser = failures.iter().filter(|of| of.is_coarser_grid).count();
+        // A failure that could not be recorded is in the tally alone.
+        let failed_count = of_tasks.saturating_sub(coarser).max(failures.len() - coarser);
         Self {
             campaign,
             tallies,
@@ -51,9 +71,10 @@ impl<'a> Ended<'a> {
         }
     }
 
-    /// True if requested results have failed or are not reached.
+    /// True if requested results have failed or are not reached. Coarser grids of a case only estimate its
+    /// error.
     pub(super) fn lacks_results(&self) -> bool {
-        self.failed_count > 0 || !self.unreached.is_empty()
+        self.failed_count > 0 || self.unreached.iter().any(|of| !of.is_coarser_grid)
     }
 
     /// The table of results with verdicts and warnings; with all of them, also the ratios of both methods.
@@ -82,9 +103,10 @@ impl<'a> Ended<'a> {
         }
         if self.failed_count > 0 {
             text += &failed_cycles(self.failed_count, &self.campaign.dir);
-            text += &self.reasons();
+            text += &self.reasons(false);
         }
-        text += &self.unreached_loads();
+        text += &self.unreached_loads(false);
+        text += &self.of_coarser_grids();
         let size = HumanBytes(self.size_bytes);
         let computed: usize = self.tallies.iter().map(|(_, tally)| tally.computed).sum();
         let planned: usize = self.tallies.iter().map(|(_, tally)| tally.planned).sum();
@@ -146,36 +168,54 @@ impl<'a> Ended<'a> {
 
     /// True if nothing was computed, and nothing failed.
     fn is_idle(&self) -> bool {
-        self.failed_count == 0 && self.tallies.iter().all(|(_, tally)| tally.computed == 0)
+        self.failures.is_empty()
+            && self.failed_count == 0
+            && self.tallies.iter().all(|(_, tally)| tally.computed == 0)
+    }
+
+    /// Failures and loads without a result on coarser grids.
+    fn of_coarser_grids(&self) -> String {
+        let failed = self.failures.iter().filter(|of| of.is_coarser_grid).count();
+        let failed =
+            if failed > 0 { failed_coarser_grids(failed) + &self.reasons(true) } else { String::new() };
+        failed + &self.unreached_loads(true)
     }
 
     /// The first loads of finished cycles without a result, each with the first line of its reason.
-    fn unreached_loads(&self) -> String {
-        if self.unreached.is_empty() {
+    fn unreached_loads(&self, of_coarser_grids: bool) -> String {
+        let unreached: Vec<&Unreached> =
+            self.unreached.iter().filter(|of| of.is_coarser_grid == of_coarser_grids).collect();
+        if unreached.is_empty() {
             return String::new();
         }
-        let mut text = format!(
-            "{} of finished cycles not reached; their other loads have results.\n",
-            counted(self.unreached.len(), "load")
-        );
-        for (id, max_load, why) in self.unreached.iter().take(LISTED) {
+        let (of, effect) = if of_coarser_grids {
+            ("coarser grids", "results are complete, their grid errors may be unknown")
+        } else {
+            ("finished cycles", "their other loads have results")
+        };
+        let count = counted(unreached.len(), "load");
+        let mut text = format!("{count} of {of} not reached; {effect}.\n");
+        for Unreached { name, max_load, why, .. } in unreached.iter().take(LISTED) {
             let why = visible(why.lines().next().unwrap_or_default());
-            text += &wrapped(&format!("  {id}, F_max/(E* A0) = {max_load}: {why}"), "    ");
+            text += &wrapped(&format!("  {name}, F_max/(E* A0) = {max_load}: {why}"), "    ");
         }
-        if self.unreached.len() > LISTED {
-            text += &format!("  … and {} more\n", self.unreached.len() - LISTED);
+        if unreached.len() > LISTED {
+            text += &format!("  … and {} more\n", unreached.len() - LISTED);
         }
         text + &format!("Reasons with help: {}/cycles/*/not_reached.json\n", shown(&self.campaign.dir))
     }
 
     /// The first failures, each with the first line of its reason; the others are in files.
-    fn reasons(&self) -> String {
+    fn reasons(&self, of_coarser_grids: bool) -> String {
+        let failures: Vec<&Failed> =
+            self.failures.iter().filter(|of| of.is_coarser_grid == of_coarser_grids).collect();
         let mut text = String::new();
-        for (id, why) in self.failures.iter().take(LISTED) {
-            text += &wrapped(&format!("  {id}: {}", visible(why.lines().next().unwrap_or_default())), "    ");
+        for Failed { name, why, .. } in failures.iter().take(LISTED) {
+            text +=
+                &wrapped(&format!("  {name}: {}", visible(why.lines().next().unwrap_or_default())), "    ");
         }
-        if self.failures.len() > LISTED {
-            text += &format!("  … and {} more\n", self.failures.len() - LISTED);
+        if failures.len() > LISTED {
+            text += &format!("  … and {} more\n", failures.len() - LISTED);
         }
         text + &format!("Reasons with help: {}/cycles/*/failed.json\n", shown(&self.campaign.dir))
     }
@@ -198,12 +238,14 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
             })
         })
         .collect();
-    let failures: Vec<_> = ended.failures.iter().map(|(id, why)| json!({ "id": id, "why": why })).collect();
-    let unreached: Vec<_> = ended
-        .unreached
-        .iter()
-        .map(|(id, max_load, why)| json!({ "id": id, "max_load": max_load, "why": why }))
-        .collect();
+    let failure = |of: &Failed| json!({ "id": of.id, "coarser_grid": of.is_coarser_grid, "why": of.why });
+    let failures: Vec<_> = ended.failures.iter().map(failure).collect();
+    let unreached = |of: &Unreached| {
+        json!({
+            "id": of.id, "coarser_grid": of.is_coarser_grid, "max_load": of.max_load, "why": of.why,
+        })
+    };
+    let unreached: Vec<_> = ended.unreached.iter().map(unreached).collect();
     let answer = json!({
         "name": ended.campaign.spec.name,
         "dir": ended.campaign.dir.display().to_string(),
@@ -229,26 +271,49 @@ pub(super) fn failed_cycles(failures: usize, dir: &Path) -> String {
     )
 }
 
+/// The number of failed cycles on coarser grids, with their effect.
+pub(super) fn failed_coarser_grids(failures: usize) -> String {
+    let text = format!(
+        "warning: {} on coarser grids failed: results are complete, and their grid errors follow from the \
+         other grids or are unknown",
+        counted(failures, "cycle")
+    );
+    wrapped(&text, "  ")
+}
+
 /// Failed cycles of a shard with their reasons.
-fn failures(campaign: &Campaign, shard: Shard) -> Vec<(String, String)> {
+fn failures(campaign: &Campaign, shard: Shard) -> Vec<Failed> {
     let cycles = campaign
         .survey(Check::Sizes)
         .cycles
         .into_iter()
-        .filter(|(place, _)| shard.holds(campaign.cycles[*place].surface));
-    let failed = cycles.filter_map(|(place, standing)| match standing {
-        Standing::Failed(why) => Some((campaign.cycles[place].id.clone(), why)),
+        .map(|(place, standing)| (&campaign.cycles[place], standing))
+        .filter(|(unit, _)| shard.holds(unit.surface));
+    let failed = cycles.filter_map(|(unit, standing)| match standing {
+        Standing::Failed(why) => Some(Failed {
+            id: unit.id.clone(),
+            name: campaign.name_of(unit),
+            is_coarser_grid: campaign.is_coarser_grid(unit),
+            why,
+        }),
         _ => None,
     });
     failed.collect()
 }
 
 /// Loads without a result of the finished cycles of a shard.
-fn unreached(campaign: &Campaign, shard: Shard) -> Vec<(String, f64, String)> {
+fn unreached(campaign: &Campaign, shard: Shard) -> Vec<Unreached> {
     let cycles = campaign.distinct_cycles().into_iter().filter(|unit| shard.holds(unit.surface));
     let of = |unit: CycleUnit| {
         let loads = campaign.not_reached(&unit);
-        loads.into_iter().map(move |(load, why)| (unit.id.clone(), load, why))
+        let one = move |(max_load, why)| Unreached {
+            id: unit.id.clone(),
+            name: campaign.name_of(&unit),
+            is_coarser_grid: campaign.is_coarser_grid(&unit),
+            max_load,
+            why,
+        };
+        loads.into_iter().map(one)
     };
     cycles.flat_map(of).collect()
 }

@@ -7,6 +7,7 @@ mod csv;
 mod ending;
 mod export;
 mod findings;
+mod grids;
 mod living;
 mod measured;
 mod outputs;

@@ -11,14 +11,15 @@ use crate::cli::FolderArguments;
 use crate::model::{GeneratedSurface, SurfaceSource};
 use crate::schema::{self, Table};
 use crate::spec::{CaseParams, GENERATED, MEASURED, NAMES, REPLACED, WHERE_USED};
-use crate::stats::{grid_help, grid_verdict, significant, warnings_of};
+use crate::stages::cycle_results;
+use crate::stats::{self, Given, grid_help, grid_percent, grid_verdict, significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
 use crate::text::{shell_path, shown, visible, wrapped};
 use indicatif::HumanBytes;
 use serde_json::{Map, Value, json};
 
 /// Results in the printed text; JSON has all columns.
-const RESULTS: [&str; 27] = [
+const RESULTS: [&str; 29] = [
     "max_load_n",
     "max_load_pa",
     "pull_off_load",
@@ -46,6 +47,8 @@ const RESULTS: [&str; 27] = [
     "area_grid_error",
     "pull_off_grid_error",
     "loss_grid_error",
+    "loading_grid_error",
+    "unloading_grid_error",
 ];
 
 /// A case or task.
@@ -117,6 +120,10 @@ fn of_case(campaign: &Campaign, place: usize, case: &CaseUnit) -> Result<Shown, 
         .map(|cycle| (cycle.id.clone(), state(&campaign.cycle_standing(cycle, Check::Sizes))))
         .collect();
     let done = tasks.iter().filter(|(_, state)| state == Standing::Done.word()).count();
+    let done = format!("{done} of {} cycles done", tasks.len());
+    if case.case.is_coarser_grid() {
+        return of_coarser_grid(campaign, case, &done, tasks);
+    }
     let mut found = Shown::default();
     if let Some(frame) = table(campaign, &schema::CASES)? {
         let rows = rows(&frame, "case_id", &case.id)?;
@@ -134,10 +141,37 @@ fn of_case(campaign: &Campaign, place: usize, case: &CaseUnit) -> Result<Shown, 
     }
     Ok(Shown {
         kind: "case",
-        state: format!("{done} of {} cycles done; in sweep {}", tasks.len(), case.case.sweeps.join(", ")),
+        state: format!("{done}; in sweep {}", case.case.sweeps.join(", ")),
         parameters: parameters(&case.case.params),
         tasks,
         ..found
+    })
+}
+
+/// A coarser grid of a case, with its means and their errors.
+fn of_coarser_grid(
+    campaign: &Campaign,
+    unit: &CaseUnit,
+    done: &str,
+    tasks: Vec<(String, String)>,
+) -> Result<Shown, Fault> {
+    let family = unit.case.params.on_any_grid();
+    let is_finer = |other: &&CaseUnit| other.case.params.on_any_grid() == family;
+    let finest: Vec<&str> = campaign.shown_cases().filter(is_finer).map(|other| other.id.as_str()).collect();
+    let mut results = Vec::new();
+    if let Some(frame) = table(campaign, &schema::GRIDS)? {
+        let cases = frame.text("case_id").map_err(failed)?;
+        let rows = rows(&frame, "grid_case_id", &unit.id)?;
+        let of_first = rows.iter().filter(|row| Some(&cases[**row]) == finest.first());
+        results = of_first.map(|row| values(&frame, *row)).collect();
+    }
+    Ok(Shown {
+        kind: "coarser grid",
+        state: format!("{done}; for the grid error of case {}", finest.join(", ")),
+        parameters: parameters(&unit.case.params),
+        results,
+        tasks,
+        ..Shown::default()
     })
 }
 
@@ -151,9 +185,14 @@ fn of_cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Shown, Fault> {
         let own = rows(&frame, "cycle_id", &unit.id)?.into_iter().filter(|row| cases[*row] == case.id);
         results = own.map(|row| values(&frame, row)).collect();
     }
+    if campaign.is_coarser_grid(unit) && standing == Standing::Done {
+        let of_loads = cycle_results(campaign, unit).map_err(failed)?;
+        results = of_loads.into_iter().map(|(max_load, of)| given(max_load, of)).collect();
+    }
+    let of = if campaign.is_coarser_grid(unit) { "coarser grid" } else { "case" };
     Ok(Shown {
         kind: Stage::Cycle.word(),
-        state: format!("{}; case {}, surface {}", state(&standing), case.id, surface.id),
+        state: format!("{}; {of} {}, surface {}", state(&standing), case.id, surface.id),
         parameters: parameters(&case.case.params),
         results,
         files: files(campaign, &unit.cycle()),
@@ -250,6 +289,18 @@ fn values(frame: &Frame, row: usize) -> Map<String, Value> {
     frame.columns().map(|(column, data)| (column.name.to_owned(), value(data))).collect()
 }
 
+/// Results of a cycle as a row.
+fn given(max_load: f64, columns: Given) -> Map<String, Value> {
+    let value = |value: stats::Value| match value {
+        stats::Value::Real(number) => json!(number),
+        stats::Value::Whole(number) => json!(number),
+        stats::Value::Word(word) => json!(word),
+        stats::Value::Missing => Value::Null,
+    };
+    let columns = columns.into_iter().map(|(name, of)| (name, value(of)));
+    std::iter::once(("max_load".to_owned(), json!(max_load))).chain(columns).collect()
+}
+
 fn answer(id: &str, found: &Shown) -> Value {
     let tasks: Vec<_> = found.tasks.iter().map(|(id, state)| json!({ "id": id, "state": state })).collect();
     let Shown { kind, state, parameters, results, verdicts, warnings, files, .. } = found;
@@ -292,6 +343,10 @@ fn described(id: &str, found: &Shown) -> String {
 /// A result, or its mean with its standard deviation, with its unit.
 fn result(row: &Map<String, Value>, name: &str) -> Option<String> {
     let number = |name: &str| row.get(name).and_then(Value::as_f64).map(|number| significant(number, 4));
+    if name.ends_with("_grid_error") {
+        let error = row.get(name).and_then(Value::as_f64)?;
+        return Some(format!("{name} = {}", grid_percent(error)));
+    }
     let unit = schema::REALIZATIONS.column(name).map(|column| column.unit).filter(|unit| *unit != "1");
     let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
     if let Some(own) = number(name) {

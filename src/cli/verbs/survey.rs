@@ -1,15 +1,15 @@
 //! Commands that show the state of a run: `plan` and `status`. They write nothing.
 
 use super::causes::causes;
-use super::ending::failed_cycles;
+use super::ending::{failed_coarser_grids, failed_cycles};
 use super::living::{Living, Units, left};
 use super::place::{folder, open, open_dir, resuming};
 use super::verdicts::outside_json;
-use super::{Fault, failed, probes, say, spectra, submit, verdicts};
+use super::{Fault, failed, grids, probes, say, spectra, submit, verdicts};
 use crate::campaign::{Campaign, CycleUnit, REPORT_PAGE, STATISTICS, Stage, Standing, Survey};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::engines::slurm::{Queue, Sent};
-use crate::stages::foreseen;
+use crate::stages::{above_error, foreseen};
 use crate::store::Check;
 use crate::text::{counted, shown, visible};
 use serde_json::{Value, json};
@@ -42,6 +42,7 @@ pub(super) fn plan(spec: &Path, output: &OutputArguments) -> Result<u8, Fault> {
             + &spectra::text(&campaign)
             + &probes::text(&campaign, &foreseen.verdicts)
             + &verdicts::plan_text(&foreseen)
+            + &grids::text(&campaign)
             + &remaining(&units, &campaign, |open| {
                 format!("`run` would compute {}.\n", counted(open, "task"))
             })
@@ -61,15 +62,18 @@ pub(super) fn status(asked: &FolderArguments, watch: bool) -> Result<u8, Fault> 
         let slurm = Slurm::of(&campaign, &survey);
         let mut units = units(&campaign, survey);
         living.mark(&campaign, &mut units);
+        let above = if asked.json { String::new() } else { grids::above(&campaign)? };
         let mut text = if asked.json {
             let mut answer = answer(&campaign, &units);
+            answer["above_grid_error"] = above_json(&campaign)?;
             answer["processes"] = json!(living.alive);
             if let Some(of_slurm) = slurm.answer() {
                 answer["slurm"] = of_slurm;
             }
             format!("{answer:#}\n")
         } else {
-            describe(&campaign, &units, |stage, _| living.tasks(stage))
+            let further = |stage: Stage| if stage == Stage::Cycle { above.as_str() } else { "" };
+            describe(&campaign, &units, |stage, _| further(stage).to_owned() + &living.tasks(stage))
         };
         if !asked.json {
             if let Some(why) = campaign.spec_fault() {
@@ -206,18 +210,41 @@ impl Slurm {
     }
 }
 
+/// Cases whose grid error remains above the required one, in JSON.
+fn above_json(campaign: &Campaign) -> Result<Value, Fault> {
+    let of_cases = above_error(campaign).map_err(failed)?;
+    Ok(of_cases.iter().map(|of| json!({ "case": of.case_id, "grid": of.grid, "error": of.error })).collect())
+}
+
 /// Pending tasks in a sentence, and failed ones.
 fn remaining(units: &Units, campaign: &Campaign, does: impl Fn(usize) -> String) -> String {
+    let coarser = coarser_names(campaign);
+    let is_failed = |(_, standing): &&(String, Standing)| matches!(standing, Standing::Failed(_));
+    let is_coarser = |(id, _): &&(String, Standing)| coarser.contains_key(id.as_str());
     // Where a surface failed, its cycles did too.
-    let of_stage =
-        |units: &[(String, Standing)]| units.iter().filter(|(_, s)| matches!(s, Standing::Failed(_))).count();
+    let of_stage = |units: &[(String, Standing)]| {
+        units.iter().filter(is_failed).filter(|unit| !is_coarser(unit)).count()
+    };
     let failed = units.iter().map(|(_, units)| of_stage(units)).max().unwrap_or(0);
-    match (left(units), failed) {
-        (0, 0) => "Nothing is left to do.\n".to_owned(),
+    let all = units.iter().flat_map(|(_, units)| units);
+    let failed_coarser = match all.filter(is_failed).filter(is_coarser).count() {
+        0 => String::new(),
+        count => failed_coarser_grids(count),
+    };
+    let text = match (left(units), failed) {
+        (0, 0) if failed_coarser.is_empty() => "Nothing is left to do.\n".to_owned(),
+        (0, 0) => "All other tasks are done.\n".to_owned(),
         (0, failed) => format!("All other tasks are done. {}", failed_cycles(failed, &campaign.dir)),
         (open, 0) => does(open),
         (open, failed) => does(open) + &failed_cycles(failed, &campaign.dir),
-    }
+    };
+    failed_coarser + &text
+}
+
+/// Names of the cycles on coarser grids, by their ids.
+fn coarser_names(campaign: &Campaign) -> HashMap<String, String> {
+    let coarser = campaign.distinct_cycles().into_iter().filter(|unit| campaign.is_coarser_grid(unit));
+    coarser.map(|unit| (unit.id.clone(), campaign.name_of(&unit))).collect()
 }
 
 /// Clears the terminal.
@@ -301,6 +328,7 @@ fn describe(
         coarser_grids(campaign),
         campaign.realizations_in_words()
     );
+    let coarser = coarser_names(campaign);
     for (stage, units) in units {
         let counted: Vec<String> = Standing::WORDS
             .iter()
@@ -317,7 +345,8 @@ fn describe(
             } else {
                 &format!("is {}", standing.word())
             };
-            text += &format!("  {id} {verb}{why}\n");
+            let name = coarser.get(id.as_str()).unwrap_or(id);
+            text += &format!("  {name} {verb}{why}\n");
         }
         if *stage == Stage::Cycle {
             text += &not_reached(campaign);
@@ -338,7 +367,9 @@ fn coarser_grids(campaign: &Campaign) -> String {
 /// Loads of finished cycles that have no result, one line for each cycle.
 fn not_reached(campaign: &Campaign) -> String {
     let of = |unit: &CycleUnit| {
-        campaign.not_reached_in_tables(unit).map(|why| format!("  {}: {}\n", unit.id, visible(&why)))
+        campaign
+            .not_reached_in_tables(unit)
+            .map(|why| format!("  {}: {}\n", campaign.name_of(unit), visible(&why)))
     };
     campaign.distinct_cycles().iter().filter_map(of).collect()
 }

@@ -3,7 +3,7 @@
 use super::ending::{Ended, tally_json};
 use super::place::{folder, folder_of, not_the_root, open, open_dir};
 use super::verdicts::run_text;
-use super::{BAD_SPEC, FAILED_CASES, Fault, failed, probes, say, spectra, submit, viewer};
+use super::{BAD_SPEC, FAILED_CASES, Fault, failed, grids, probes, say, spectra, submit, viewer};
 use crate::campaign::{Campaign, Shard, Stage, Standing};
 use crate::cli::arguments::TalkArguments;
 use crate::cli::progress::Teller;
@@ -186,7 +186,9 @@ fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> 
     if has_cycles && !talk.quiet && campaign.cycle_standings(Check::Sizes).iter().any(is_open) {
         let foreseen = foreseen(&campaign);
         let before = spectra::text(&campaign) + &probes::text(&campaign, &foreseen.verdicts);
-        teller.notice(&(before + &run_text(&foreseen)));
+        let unread = grids::text(&campaign);
+        let unread = if unread.is_empty() { unread } else { format!("\n{}", unread.trim_end()) };
+        teller.notice(&(before + &run_text(&foreseen) + &unread));
     }
     let jobs = submit::sent(&campaign).unwrap_or_default();
     let again = submit::again(&campaign, &jobs);

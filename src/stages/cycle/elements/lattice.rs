@@ -2,13 +2,12 @@
 
 use super::super::super::StageError;
 use super::ElementsCase;
-use crate::model::{GeneratedSurface, Probe};
+use crate::model::GeneratedSurface;
 use crate::physics::PhysicsError;
-use crate::physics::elements::{PER_WAVELENGTH, memory_bytes};
+use crate::physics::elements::memory_bytes;
 use crate::physics::memory;
-use crate::spec::{CaseParams, probe_refusal};
+use crate::spec::{CaseParams, probe_refusal, shortest_lengths};
 use crate::store::hdf5::SurfaceHeader;
-use std::f64::consts::PI;
 
 /// Grid of a case on one surface.
 #[derive(Debug, Clone, Copy)]
@@ -55,7 +54,7 @@ impl Square {
 impl Lattice {
     /// The grid of a case on a square of a side \[m\] with a number of shortest wavelengths.
     fn of(of: ElementsCase<'_>, length_m: f64, wavelengths: f64) -> Self {
-        let wavelengths = wavelengths.max(of.radii(length_m));
+        let wavelengths = shortest_lengths(of.params, length_m, wavelengths);
         let points = of.options.grid(wavelengths);
         let spacing_m = length_m / f64::from(points);
         Self {
@@ -75,18 +74,6 @@ impl Lattice {
     pub(super) fn of_measured(of: ElementsCase<'_>, square: Square) -> Self {
         let (length_m, wavelengths) = square.extent();
         Self::of(of, length_m, wavelengths)
-    }
-}
-
-impl ElementsCase<'_> {
-    /// Side of a square \[m\] in shortest lengths of a probe, of which the automatic grid resolves each as a
-    /// shortest wavelength: 12 points per JKR radius at zero penetration.
-    fn radii(self, length_m: f64) -> f64 {
-        let radius_m = |probe: &Probe| (2.0 * PI).cbrt() * probe.jkr_radius_m(&self.params.material);
-        self.params
-            .probe
-            .as_ref()
-            .map_or(0.0, |probe| POINTS_PER_RADIUS / PER_WAVELENGTH * length_m / radius_m(probe))
     }
 }
 
@@ -122,9 +109,6 @@ impl ElementsCase<'_> {
 const THINNEST_LAYER: f64 = 4.0;
 /// Compliance of a machine in 1/(E* L), at most: its spring has 100 times the energy of the contact.
 const SOFTEST_MACHINE: f64 = 2000.0;
-
-/// Grid points of the automatic grid per JKR radius of a probe at zero penetration.
-const POINTS_PER_RADIUS: f64 = 12.0;
 
 /// The grid of a case on a surface with this header and rms height \[m\], checked.
 pub(super) fn checked_lattice(
