@@ -4,8 +4,6 @@
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
-use toml::Spanned;
-
 use super::auto::Choices;
 use super::cases::Cases;
 use super::coarser::{self, Coarser, points_of};
@@ -100,11 +98,14 @@ fn each_point(
     }
     for sweep in sweeps {
         let swept: Vec<usize> = sweep.axes.iter().map(|axis| axis.key).collect();
-        for point in points(&sweep.axes) {
+        for point in points(sweep) {
             let (mut values, mut origins) = (base.clone(), of_base.to_vec());
-            for (axis, value) in sweep.axes.iter().zip(point) {
-                (KEYS[axis.key].set)(&mut values, value.get_ref());
-                origins[axis.key] = Origin::Written(value.span());
+            for (group, at) in sweep.together.iter().zip(point) {
+                for axis in group.iter().map(|place| &sweep.axes[*place]) {
+                    let value = &axis.values[at];
+                    (KEYS[axis.key].set)(&mut values, value.get_ref());
+                    origins[axis.key] = Origin::Written(value.span());
+                }
             }
             add(values, &origins, &swept, &sweep.name);
         }
@@ -116,8 +117,7 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
     let mut total: u128 = 0;
     let mut first_beyond: Option<&Range<usize>> = None;
     for sweep in sweeps {
-        let count =
-            sweep.axes.iter().fold(1_u128, |count, axis| count.saturating_mul(axis.values.len() as u128));
+        let count = sweep.counts().fold(1_u128, |count, values| count.saturating_mul(values as u128));
         total = total.saturating_add(count);
         if total > u128::from(MAX_CASES) {
             first_beyond = first_beyond.or(Some(&sweep.span));
@@ -159,20 +159,17 @@ fn bound_tasks(
     }
 }
 
-/// Every point of the grid of some axes, the last one running fastest; one empty point if there is no axis.
-fn points(axes: &[AxisDraft]) -> impl Iterator<Item = Vec<&Spanned<Value>>> {
-    let count: usize = axes.iter().map(|axis| axis.values.len()).product();
-    (0..count).map(|number| {
+/// Every point of the grid of a sweep: the place of the value of each group of axes. The last group runs
+/// fastest. One empty point if there is no axis.
+fn points(sweep: &SweepDraft) -> impl Iterator<Item = Vec<usize>> {
+    let counts: Vec<usize> = sweep.counts().collect();
+    (0..counts.iter().product()).map(move |number: usize| {
         let mut rest = number;
-        let mut point: Vec<_> = axes
-            .iter()
-            .rev()
-            .map(|axis| {
-                let value = &axis.values[rest % axis.values.len()];
-                rest /= axis.values.len();
-                value
-            })
-            .collect();
+        let mut point: Vec<usize> = Vec::with_capacity(counts.len());
+        for count in counts.iter().rev() {
+            point.push(rest % count);
+            rest /= count;
+        }
         point.reverse();
         point
     })
@@ -267,5 +264,11 @@ fn sweep(draft: &SweepDraft) -> Sweep {
         key: KEYS[axis.key].path,
         values: axis.values.iter().map(|value| value.get_ref().clone()).collect(),
     };
-    Sweep { name: draft.name.clone(), axes: draft.axes.iter().map(axis).collect() }
+    let path = |place: &usize| KEYS[draft.axes[*place].key].path;
+    let zip = draft.together.iter().filter(|group| group.len() > 1);
+    Sweep {
+        name: draft.name.clone(),
+        zip: zip.map(|group| group.iter().map(path).collect()).collect(),
+        axes: draft.axes.iter().map(axis).collect(),
+    }
 }

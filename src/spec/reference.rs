@@ -47,6 +47,9 @@ material.work_of_adhesion_j_m2 = [0.01, 0.02, 0.05]
 - A value replaces the value of the section for all cases of the sweep.
 - An array of values gives one case for each value.
 - Arrays in one sweep multiply. Several sweeps add up. Equal cases are computed once.
+- `zip = [\"surface.magnification\", \"boundary_elements.points\"]` names keys whose arrays advance
+  together: the first values make one case, the second values the next. The arrays have equally many
+  values. Several groups are an array of arrays.
 - A key that holds an array (`max_load`, `as_printed`) is swept with an array of arrays.
 ";
 

@@ -51,6 +51,9 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     }
     for sweep in &spec.sweeps {
         writeln!(text, "\n[[sweep]]\nname = \"{}\"", sweep.name)?;
+        if !sweep.zip.is_empty() {
+            writeln!(text, "zip = {}", zip(&sweep.zip))?;
+        }
         for axis in &sweep.axes {
             match axis.values.as_slice() {
                 [only] => writeln!(text, "{} = {}", axis.key, value(only))?,
@@ -124,6 +127,15 @@ pub(super) fn value(value: &Value) -> String {
         Value::Words(words) => {
             format!("[{}]", list(words.iter().map(|word| format!("\"{word}\""))))
         }
+    }
+}
+
+/// Groups of keys: one array for one group.
+fn zip(groups: &[Vec<&str>]) -> String {
+    let one = |group: &Vec<&str>| format!("[{}]", list(group.iter().map(|key| format!("\"{key}\""))));
+    match groups {
+        [only] => one(only),
+        many => format!("[{}]", list(many.iter().map(one))),
     }
 }
 
