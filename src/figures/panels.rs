@@ -1,7 +1,7 @@
 //! The five panels of a sweep: the four of the paper, and the dissipated energy by branch.
 
 use super::FigureError;
-use super::captions::{data, of_sweep};
+use super::captions::{data, of_sweep, of_sweeps};
 use super::curve::{Stroke, XyPlot};
 use super::markup::described;
 use super::paths::paths;
@@ -10,6 +10,7 @@ use super::results::{Measured, Predicted, results};
 use super::sizes::sizes;
 use super::sweep::{Member, Sweep, Tables};
 use super::units::{Quantity, Scales, Units};
+use crate::stats::sweeps;
 use crate::store::Frame;
 
 /// A panel that has been drawn.
@@ -46,7 +47,7 @@ impl Panel {
     }
 }
 
-/// Draws the panels of one sweep: `<sweep>_A` area over load, `<sweep>_B` pull-off force, `<sweep>_C`
+/// Draws the panels of one sweep, or of several whose names are joined by `+`: `<sweep>_A` area over load, `<sweep>_B` pull-off force, `<sweep>_C`
 /// penetration over load, `<sweep>_D` dissipated energy, with the prediction of Deng and Kesari, `<sweep>_E`
 /// its fraction on each branch, `<sweep>_F` the sizes of avalanches; in other units with an ending.
 ///
@@ -70,10 +71,15 @@ pub fn panels(tables: &Tables<'_>, sweep: &str, units: Units) -> Result<Vec<Pane
     }
     let stem: String = if sweep.is_empty() { "run" } else { sweep }
         .chars()
-        .map(|letter| if letter.is_ascii_alphanumeric() || letter == '-' { letter } else { '_' })
+        .map(|letter| match letter {
+            '+' => '-',
+            letter if letter.is_ascii_alphanumeric() || letter == '-' => letter,
+            _ => '_',
+        })
         .collect();
     let mut panels = drawn(tables, &found, &stem, units)?;
-    panels.iter_mut().for_each(|panel| panel.caption += &data(&panel.name));
+    let name = if sweeps(tables.cases)?.len() > 1 { of_sweeps(sweep) } else { String::new() };
+    panels.iter_mut().for_each(|panel| panel.caption += &format!("{name}{}", data(&panel.name)));
     Ok(panels)
 }
 

@@ -1,7 +1,7 @@
 //! Part of the report: comparison with analytical models.
 
 use super::cases::Cases;
-use super::layout::{heading, prose, wide};
+use super::layout::{heading, prose};
 use super::numbers::scaled;
 use crate::stats::{Listed, StatsError};
 use maud::{Markup, html};
@@ -65,12 +65,12 @@ pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     let head = html! {
         (cases.name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } }
     };
-    let row = |listed: &Listed| -> Result<Markup, StatsError> {
+    let row = |listed: &Listed| -> Result<(usize, Markup), StatsError> {
         let mut cells = Vec::new();
         for (_, column, scale) in &columns {
             cells.push(scaled(cases.number(&format!("{column}_mean"), listed.row)?, *scale));
         }
-        Ok(html! { (cases.name(listed)) @for cell in cells { td { (cell) } } })
+        Ok((listed.row, html! { (cases.name(listed)) @for cell in cells { td { (cell) } } }))
     };
     let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
@@ -85,6 +85,6 @@ pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                 li { (prose(model)) } "\n"
             }
         } "\n"
-        (wide("models", &head, &rows))
+        (cases.wide("models", &head, rows))
     })
 }

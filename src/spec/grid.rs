@@ -9,6 +9,7 @@ use super::cases::Cases;
 use super::coarser::{self, Coarser, points_of};
 use super::elements::check_elements;
 use super::fault::Faults;
+use super::figures::check_across;
 use super::files::named;
 use super::keys::{KEYS, find};
 use super::number::short;
@@ -63,6 +64,11 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     bound_tasks(&cases.list, realizations, at.or(read.first().map(|sweep| &sweep.span)), faults);
     choices.check(draft.auto_at.as_ref(), faults);
     sides.check(draft.sides_at.as_ref(), faults);
+    // A sweep with a fault has no name.
+    if read.len() == sweeps.len() {
+        let names: Vec<&str> = read.iter().map(|sweep| sweep.name.as_str()).collect();
+        check_across(&draft.across, &names, faults);
+    }
     let mut sweeps: Vec<Sweep> = read.into_iter().map(sweep).collect();
     let auto_methods = choices.settle(&mut base, &mut sweeps);
     // Of cases that are all chosen the places are of no use.

@@ -241,6 +241,9 @@ fn experiment() -> Value {
 fn figures() -> Value {
     let default = Figures::default();
     let format = json!({ "type": "string", "enum": FORMATS });
+    let group = json!({
+        "type": "array", "items": { "type": "string", "pattern": NAME }, "minItems": 2, "uniqueItems": true,
+    });
     json!({
         "type": "object",
         "additionalProperties": false,
@@ -261,6 +264,11 @@ fn figures() -> Value {
             "loads": {
                 "type": "string", "enum": LOADS, "default": default.loads,
                 "description": "Loads in the figures of sweeps of other parameters.",
+            },
+            "across": {
+                "anyOf": [group, { "type": "array", "items": group, "minItems": 1 }],
+                "description": "Sweeps with figures of all of their cases together; several groups as an array \
+                     of arrays.",
             },
         },
         "description": "Files of the figures.",

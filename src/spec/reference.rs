@@ -105,6 +105,7 @@ fn top() -> String {
 | `figures.width_mm` | float | {} | `88` |
 | `figures.font` | string | 1 to {LONGEST_FONT} bytes | `\"{DEFAULT_FONT}\"` |
 | `figures.loads` | string | `\"largest\"`, `\"all\"` | `\"largest\"` |
+| `figures.across` | array of strings | at least two sweeps | none |
 
 - `name`: Name of the run and of its default output directory.
 - `seed`: Seed of all generated surfaces. The same seed gives the same surfaces.
@@ -125,7 +126,9 @@ fn top() -> String {
            - `figures.width_mm`: Width in millimetres of a panel in PNG and PDF files. Labels next to a\n  \
            panel add to it.\n\
            - `figures.font`: Font family of the SVG files. PNG and PDF files have DejaVu Sans.\n\
-           - `figures.loads`: Loads in the figures of sweeps of other parameters. Tables have all loads.\n"
+           - `figures.loads`: Loads in the figures of sweeps of other parameters. Tables have all loads.\n\
+           - `figures.across`: Names of sweeps with figures of all of their cases together, such as\n  \
+           `[\"coarse\", \"fine\"]`. Several groups are an array of arrays.\n"
 }
 
 /// The table of measured loops.

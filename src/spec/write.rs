@@ -2,6 +2,7 @@
 
 use std::fmt::{Error, Write as _};
 
+use super::figures::arrays;
 use super::keys::{
     GENERATED, KEYS, Key, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_LOADS, REPLACED, TABLES, WHERE_USED,
 };
@@ -52,7 +53,7 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     for sweep in &spec.sweeps {
         writeln!(text, "\n[[sweep]]\nname = \"{}\"", sweep.name)?;
         if !sweep.zip.is_empty() {
-            writeln!(text, "zip = {}", zip(&sweep.zip))?;
+            writeln!(text, "zip = {}", arrays(&sweep.zip))?;
         }
         for axis in &sweep.axes {
             match axis.values.as_slice() {
@@ -127,15 +128,6 @@ pub(super) fn value(value: &Value) -> String {
         Value::Words(words) => {
             format!("[{}]", list(words.iter().map(|word| format!("\"{word}\""))))
         }
-    }
-}
-
-/// Groups of keys: one array for one group.
-fn zip(groups: &[Vec<&str>]) -> String {
-    let one = |group: &Vec<&str>| format!("[{}]", list(group.iter().map(|key| format!("\"{key}\""))));
-    match groups {
-        [only] => one(only),
-        many => format!("[{}]", list(many.iter().map(one))),
     }
 }
 
