@@ -39,7 +39,7 @@ def animated(attribute, values):
 def path(branch, dash):
     """A branch of the loop."""
     points = " ".join(f"{x:.1f},{y:.1f}" for x, y, step in zip(at_x, at_y, steps, strict=True) if step["branch"] == branch)
-    return f'<polyline points="{points}" fill="none" stroke="#0072b2" stroke-width="2" stroke-dasharray="{dash}"/>'
+    return f'<polyline points="{points}" fill="none" stroke="#7b3294" stroke-width="2" stroke-dasharray="{dash}"/>'
 
 
 def spots(k):

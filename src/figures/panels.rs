@@ -4,6 +4,7 @@ use super::FigureError;
 use super::captions::{data, of_sweep, of_sweeps};
 use super::curve::{Stroke, XyPlot};
 use super::markup::described;
+use super::notes::shared;
 use super::paths::paths;
 use super::plot::{plot_xy, width_beside};
 use super::results::{Measured, Predicted, results};
@@ -12,6 +13,7 @@ use super::sweep::{Member, Sweep, Tables};
 use super::units::{Quantity, Scales, Units};
 use crate::stats::sweeps;
 use crate::store::Frame;
+use crate::text::counted;
 
 /// A panel that has been drawn.
 #[derive(Debug, Clone)]
@@ -93,13 +95,14 @@ pub fn compared(tables: &Tables<'_>, labels: &[String], stem: &str) -> Result<Ve
 }
 
 fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result<Vec<Panel>, FigureError> {
-    let surfaces = surfaces(tables.cases, found)?;
+    let (surfaces, failures) = (surfaces(tables.cases, found)?, failures(tables.cases, found)?);
     let scales = Scales::of(tables, found, units)?;
     let mut plots = plots(tables, found, &scales)?;
     // Surfaces of different size have no common scale.
     plots.retain(|(_, plot)| {
         units == Units::Dimensionless || plot.curves.iter().any(|curve| !curve.points.is_empty())
     });
+    plots.iter_mut().for_each(|(_, plot)| plot.notes = shared(plot));
     // Adjacent panels have the same size.
     let margin = plots.iter().map(|(_, plot)| width_beside(plot)).fold(0.0, f64::max);
     // Where only the load varies, labels are numbers.
@@ -109,7 +112,8 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result
         (label, false) => label.to_owned(),
     };
     let mut cases: Vec<(String, String)> = Vec::new();
-    for member in &found.members {
+    let done = tables.cases.i64("done_count")?;
+    for member in found.members.iter().filter(|member| done[member.row] > 0) {
         let label = if found.has_facets { member.series.clone() } else { named(member) };
         if !cases.iter().any(|(known, _)| *known == label) {
             cases.push((label, member.colour.clone()));
@@ -120,7 +124,7 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result
         let name = format!("{name}{}", units.ending());
         let stem = format!("{stem}_{name}");
         let plot = XyPlot { letter, stem: stem.clone(), margin, ..plot };
-        let caption = of_sweep(letter, found, &surfaces, (&plot, &scales));
+        let caption = of_sweep(letter, found, &surfaces, (&plot, &scales)) + &failures;
         Panel {
             stem,
             name,
@@ -201,6 +205,29 @@ fn plots(
 fn numbered(letter: &str, plots: Vec<XyPlot>) -> Vec<(String, XyPlot)> {
     let name = |k| if k == 0 { letter.to_owned() } else { format!("{letter}{}", k + 1) };
     plots.into_iter().enumerate().map(|(k, plot)| (name(k), plot)).collect()
+}
+
+/// Cases of a sweep without a finished cycle, as a sentence; empty if there are none.
+fn failures(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
+    let (done, failed) = (cases.i64("done_count")?, cases.i64("failed_count")?);
+    let count = |fits: &dyn Fn(usize) -> bool| {
+        let mut ids: Vec<&str> = sweep
+            .members
+            .iter()
+            .filter(|member| fits(member.row))
+            .map(|member| member.case_id.as_str())
+            .collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids.len()
+    };
+    let all = counted(count(&|_| true), "case");
+    let sentence = |number: usize, state: &str| match number {
+        0 => String::new(),
+        _ => format!(" {number} of {all} {state}: not drawn."),
+    };
+    let text = sentence(count(&|row| done[row] == 0 && failed[row] > 0), "failed");
+    Ok(text + &sentence(count(&|row| done[row] == 0 && failed[row] == 0), "not computed"))
 }
 
 /// Number of surfaces of the means of a sweep.

@@ -3,7 +3,7 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
-use super::style::{MOST_NOTES, NEUTRAL, curve, entry};
+use super::style::{NEUTRAL, curve, entry};
 use super::sweep::{Member, Sweep};
 use super::units::{Quantity, Scales};
 use crate::store::Frame;
@@ -61,16 +61,15 @@ pub(super) fn with_loading<'a>(members: &[&'a Member]) -> impl Iterator<Item = &
     (0..members.len()).filter(is_last).map(|k| members[k])
 }
 
-/// Names of members at the ends of their curves, as far as they have room.
+/// Names of members at the ends of their curves.
 pub(super) fn noted<'a>(
     sweep: &Sweep,
     members: impl IntoIterator<Item = &'a Member>,
     curves: &[Curve],
 ) -> Vec<Note> {
-    let (beside, every) = (!sweep.differing.is_empty(), curves.len().div_ceil(MOST_NOTES));
-    let named =
-        members.into_iter().zip(curves).enumerate().filter(|(at, _)| curves.len() > 1 && at % every == 0);
-    let note = |(_, (member, curve)): (usize, (&Member, &Curve))| {
+    let beside = !sweep.differing.is_empty();
+    let named = members.into_iter().zip(curves).filter(|_| curves.len() > 1);
+    let note = |(member, curve): (&Member, &Curve)| {
         let text = if sweep.has_facets { &member.series } else { &member.label };
         curve.points.first().map(|end| Note { at: *end, text: text.clone(), beside })
     };

@@ -2,6 +2,7 @@
 
 use super::FigureError;
 use super::axis::Axis;
+use super::notes::LOAD;
 use super::style::{case_colour, series_colour};
 use crate::stats::{Values, Varying, loads, varying};
 use crate::store::Frame;
@@ -201,7 +202,7 @@ fn named(differing: &[Varying], following: usize, place: usize, load: Option<&st
     let mut parts = [said(differing, place), said(free, place)];
     match load {
         Some(load) if differing.is_empty() => parts[0].push(load.to_owned()),
-        Some(load) => parts.iter_mut().for_each(|parts| parts.push(format!("F_{{max}} = {load}"))),
+        Some(load) => parts.iter_mut().for_each(|parts| parts.push(format!("{LOAD}{load}"))),
         None => {}
     }
     parts.map(|parts| parts.join(", "))

@@ -5,7 +5,7 @@
   if (!source || !host) return;
   const { cycles, names, colours, statuses, letters } = JSON.parse(source.textContent);
   const SIDE = 400;
-  const COLOURS = { push: "#0072b2", pull: "#d55e00", unknown: "#777777", in: "#009e73", out: "#cc79a7", other: "#e69f00" };
+  const COLOURS = { path: "#7b3294", push: "#0072b2", pull: "#d55e00", unknown: "#777777", in: "#009e73", out: "#cc79a7", other: "#e69f00" };
   const state = { cycle: 0, loop: 0, k: 0, avalanche: -1, smallest: 2, layer: "pressure", absorbed: true, timer: 0, hidden: new Set() };
 
 
@@ -267,13 +267,13 @@
     const [grey, ring] = [partnerLoop() ? "; grey: the other method on this surface" : "", elementsLoop() ? ". Ring: stored map of boundary elements" : ""];
     chartNote.textContent = `Loop: loading dashed, unloading solid${grey}${ring}. A click moves to the nearest step.`;
     for (const of of loops.slice().reverse()) {
-      const colour = of === loop() ? COLOURS.push : "#999999";
+      const colour = of === loop() ? COLOURS.path : "#999999";
       chart.append(svg("path", { d: path(of, 0, of.up), fill: "none", stroke: colour, "stroke-width": 2, "stroke-dasharray": "7 4" }));
       chart.append(svg("path", { d: path(of, of.up - 1, of.f.length), fill: "none", stroke: colour, "stroke-width": 2 }));
     }
     chart.append(svg("text", { id: "explorer-tip", x: frame.left + 8, y: frame.top + 18, "font-size": 13 }));
     chart.append(svg("circle", { id: "explorer-map-dot", r: 0, fill: "none", stroke: "black", "stroke-width": 2 }));
-    chart.append(svg("circle", { id: "explorer-dot", r: 6, fill: COLOURS.pull, stroke: "white" }));
+    chart.append(svg("circle", { id: "explorer-dot", r: 6, fill: COLOURS.path, stroke: "white" }));
   };
   const nearest = (event) => {
     const place = chart.getBoundingClientRect();

@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from ._run import Maps, Run
 
 #: Colours of cases.
-PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
+PALETTE = ("#7b3294", "#009e73", "#e69f00", "#cc79a7", "#808000", "#6b472b")
+#: Compression and tension in maps.
+COMPRESSION, TENSION = "#0072b2", "#d55e00"
 
 
 def _axes(ax: Axes | None) -> Axes:
@@ -201,7 +203,7 @@ def _spots(run: Run, cycle: str, step: int | None, ax: Axes) -> Axes:
         step = int(known[np.argmax(counts)])
     rows = np.flatnonzero(touching & (number == step))
     centres = np.stack(_columns(table, "centroid_x_m", "centroid_y_m"), axis=1)[rows].astype(float)
-    colours = np.where(load[rows].astype(float) < 0, PALETTE[1], PALETTE[0])
+    colours = np.where(load[rows].astype(float) < 0, TENSION, COMPRESSION)
     diameter = 2e6 * radius[rows].astype(float)
     spots = EllipseCollection(diameter, diameter, np.zeros(rows.size), units="xy", offsets=1e6 * centres, facecolors=colours, alpha=0.85)
     ax.add_collection(spots)
