@@ -67,8 +67,7 @@ impl Panel {
 /// If no case belongs to the sweep, or a table lacks a column.
 pub fn panels(tables: &Tables<'_>, sweep: &str, units: Units) -> Result<Vec<Panel>, FigureError> {
     let found = Sweep::find(tables, sweep)?;
-    let done = tables.cases.i64("done_count")?;
-    if found.members.iter().all(|member| done.get(member.row).is_none_or(|count| *count == 0)) {
+    if found.members.iter().all(|member| !member.is_finished) {
         return Ok(Vec::new());
     }
     let stem: String = if sweep.is_empty() { "run" } else { sweep }
@@ -112,8 +111,7 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result
         (label, false) => label.to_owned(),
     };
     let mut cases: Vec<(String, String)> = Vec::new();
-    let done = tables.cases.i64("done_count")?;
-    for member in found.members.iter().filter(|member| done[member.row] > 0) {
+    for member in found.members.iter().filter(|member| member.is_finished) {
         let label = if found.has_facets { member.series.clone() } else { named(member) };
         if !cases.iter().any(|(known, _)| *known == label) {
             cases.push((label, member.colour.clone()));
@@ -209,12 +207,12 @@ fn numbered(letter: &str, plots: Vec<XyPlot>) -> Vec<(String, XyPlot)> {
 
 /// Cases of a sweep without a finished cycle, as a sentence; empty if there are none.
 fn failures(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
-    let (done, failed) = (cases.i64("done_count")?, cases.i64("failed_count")?);
-    let count = |fits: &dyn Fn(usize) -> bool| {
+    let failed = cases.i64("failed_count")?;
+    let count = |fits: &dyn Fn(&Member) -> bool| {
         let mut ids: Vec<&str> = sweep
             .members
             .iter()
-            .filter(|member| fits(member.row))
+            .filter(|member| fits(member))
             .map(|member| member.case_id.as_str())
             .collect();
         ids.sort_unstable();
@@ -226,8 +224,8 @@ fn failures(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
         0 => String::new(),
         _ => format!(" {number} of {all} {state}: not drawn."),
     };
-    let text = sentence(count(&|row| done[row] == 0 && failed[row] > 0), "failed");
-    Ok(text + &sentence(count(&|row| done[row] == 0 && failed[row] == 0), "not computed"))
+    let text = sentence(count(&|of| !of.is_finished && failed[of.row] > 0), "failed");
+    Ok(text + &sentence(count(&|of| !of.is_finished && failed[of.row] == 0), "not computed"))
 }
 
 /// Number of surfaces of the means of a sweep.

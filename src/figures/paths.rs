@@ -61,7 +61,7 @@ pub(super) fn with_loading<'a>(members: &[&'a Member]) -> impl Iterator<Item = &
     (0..members.len()).filter(is_last).map(|k| members[k])
 }
 
-/// Names of members at the ends of their curves.
+/// Names of finished members at the ends of their curves.
 pub(super) fn noted<'a>(
     sweep: &Sweep,
     members: impl IntoIterator<Item = &'a Member>,
@@ -91,16 +91,17 @@ pub(super) fn facets(sweep: &Sweep) -> Vec<Vec<&Member>> {
         return vec![sweep.members.iter().collect()];
     }
     let places = places(sweep);
-    let last = places.len() - 1;
+    let last = places.len().saturating_sub(1);
     let shown = places.len().min(MOST_FACETS);
     let at = |k: usize| places[if shown > 1 { k * last / (shown - 1) } else { 0 }];
     let members = |x: f64| sweep.members.iter().filter(|one| one.x.total_cmp(&x).is_eq()).collect();
     (0..shown).map(at).map(members).collect()
 }
 
-/// Different values of the first parameter, in ascending order.
+/// Different values of the first parameter with finished cases, in ascending order.
 pub(super) fn places(sweep: &Sweep) -> Vec<f64> {
-    let mut places: Vec<f64> = sweep.members.iter().map(|member| member.x).collect();
+    let finished = sweep.members.iter().filter(|member| member.is_finished);
+    let mut places: Vec<f64> = finished.map(|member| member.x).collect();
     places.sort_by(f64::total_cmp);
     places.dedup_by(|a, b| a.total_cmp(b).is_eq());
     places

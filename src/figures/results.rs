@@ -75,6 +75,9 @@ pub(super) fn results(
             None => measure(tables, sweep, &series, of, (of.name, &unit), &mut computed)?,
         }
     }
+    if measured.len() > 1 {
+        computed.notes = highest(&computed.notes);
+    }
     let crosses = computed.curves.iter().any(|curve| curve.stroke == Stroke::Crosses);
     let cut = computed.curves.iter().any(Curve::is_cut);
     let mut key = computed.key;
@@ -91,6 +94,12 @@ pub(super) fn results(
         .with_headroom(room);
     let x = sweep.axis.clone();
     Ok(XyPlot { notes: [computed.notes, predicted.notes].concat(), ..unnamed([x, y], curves, key) })
+}
+
+/// The highest of the notes with the same text: lines of one series differ in their strokes alone.
+fn highest(notes: &[Note]) -> Vec<Note> {
+    let is_lower = |note: &Note| notes.iter().any(|other| other.text == note.text && other.at.1 > note.at.1);
+    notes.iter().filter(|note| !is_lower(note)).cloned().collect()
 }
 
 /// Factor of the values of a row of the table `cases`.

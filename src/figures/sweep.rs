@@ -38,6 +38,8 @@ pub(super) struct Member {
     pub(super) series: String,
     /// Value along the horizontal axis, as a label.
     pub(super) facet: String,
+    /// True if a cycle of the case is finished.
+    pub(super) is_finished: bool,
     /// Places among the values of the parameters besides `x`.
     rank: Vec<usize>,
 }
@@ -75,6 +77,7 @@ impl Sweep {
         let following = following(&mut differing);
         let (ids, max_loads, loads) = (cases.text("case_id")?, cases.f64("max_load")?, loads(cases)?);
         let area = cases.f64_or_null("area_at_max_load_mean")?;
+        let done = cases.i64("done_count")?;
         let load_labels = loads.labels(rows.iter().copied());
         let load_of = |row: &usize| loads.values.get(*row).copied().unwrap_or_default();
         let many_loads = rows.windows(2).any(|pair| load_of(&pair[0]) != load_of(&pair[1]));
@@ -102,6 +105,7 @@ impl Sweep {
                 colour: String::new(),
                 series,
                 facet: said(&differing[..differing.len().min(1 + following)], place).join(", "),
+                is_finished: done.get(*row).is_some_and(|count| *count > 0),
                 rank: ranks.iter().map(|rank| rank[place]).collect(),
             });
         }
@@ -137,6 +141,7 @@ impl Sweep {
             // Runs are not joined by a line.
             series: label.clone(),
             facet: String::new(),
+            is_finished: true,
             rank: Vec::new(),
         };
         let differing = vec![Varying::named_as(["campaign", "run", "run"], Values::Words(labels.to_vec()))];

@@ -41,15 +41,22 @@ pub fn by_sweep(cases: &Frame, listing: &Listing) -> Result<Vec<OfSweeps>, Stats
         let members: Vec<usize> =
             all.iter().copied().filter(|row| own.split('+').any(|name| has(joined[*row], name))).collect();
         let is_constant = |of: &Varying| members.iter().all(|row| of.text(*row) == of.text(listed.row));
-        let named = |constant: bool| -> Vec<String> {
-            let of = differing.iter().filter(|of| is_constant(of) == constant && is_shown(of, listed.row));
+        let assigned = |of: &mut dyn Iterator<Item = &Varying>| -> Vec<String> {
             of.map(|of| of.assigned(listed.row)).collect()
         };
-        let label = Some(named(false).join(", ")).filter(|label| !label.is_empty() && !listed.is_reference);
-        let row = (listed.row, label.unwrap_or_else(|| listed.label.clone()));
+        let constants = || differing.iter().filter(|of| is_constant(of) && is_shown(of, listed.row));
+        let free = || differing.iter().filter(|of| !is_constant(of) && !of.is_absent(listed.row));
+        // Like the reference case in all that varies here: all that varies.
+        let short = assigned(&mut free().filter(|of| is_shown(of, listed.row)));
+        let label = if short.is_empty() { assigned(&mut free()) } else { short }.join(", ");
+        let is_own = !label.is_empty() && !listed.is_reference;
+        let row = (listed.row, if is_own { label } else { listed.label.clone() });
         match found.iter_mut().find(|(known, _)| *known == own) {
             Some((_, of)) => of.rows.push(row),
-            None => found.push((own, OfSweeps { heading: heading(own, &named(true)), rows: vec![row] })),
+            None => found.push((
+                own,
+                OfSweeps { heading: heading(own, &assigned(&mut constants())), rows: vec![row] },
+            )),
         }
     }
     Ok(found.into_iter().map(|(_, of)| of).collect())
