@@ -2,8 +2,9 @@
 //! cycle.
 //!
 //! The colour is the case (a palette; numbers in their order along a scale), or with several varying
-//! parameters the series. Blue and red are compression and tension, in maps only. The dash is the branch: loading dashed, unloading solid. Analytical models
-//! are black. Lower loads of one case are lighter, and each curve has its label at the end.
+//! parameters the series. The dash is the branch: loading dashed, unloading solid. Analytical models are
+//! black. Blue and red are compression and tension, in maps only. Lower loads of one case are lighter, and
+//! each curve has its label at the end; loads whose curves coincide share one.
 
 mod axis;
 mod both;

@@ -49,9 +49,10 @@ impl Panel {
     }
 }
 
-/// Draws the panels of one sweep, or of several whose names are joined by `+`: `<sweep>_A` area over load, `<sweep>_B` pull-off force, `<sweep>_C`
-/// penetration over load, `<sweep>_D` dissipated energy, with the prediction of Deng and Kesari, `<sweep>_E`
-/// its fraction on each branch, `<sweep>_F` the sizes of avalanches; in other units with an ending.
+/// Draws the panels of one sweep, or of several whose names are joined by `+`: `<sweep>_A` area over load,
+/// `<sweep>_B` pull-off force, `<sweep>_C` penetration over load, `<sweep>_D` dissipated energy, with the
+/// prediction of Deng and Kesari, `<sweep>_E` its fraction on each branch, `<sweep>_F` the sizes of
+/// avalanches; in other units with an ending.
 ///
 /// The horizontal axis of B, D and E is the parameter that varies; if only the load reversal varies, it is
 /// the area at the end of loading. If several parameters vary, the one with most values is the axis, the

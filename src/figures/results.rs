@@ -148,8 +148,8 @@ fn predict(
     Ok(())
 }
 
-/// Means of a result, by its column and the factor of its values, with error bars, or with crosses where there
-/// are too few surfaces for these.
+/// Means of a result, by its column and the factor of its values, with error bars, or with crosses where
+/// there are too few surfaces for these.
 fn measure(
     tables: &Tables<'_>,
     sweep: &Sweep,

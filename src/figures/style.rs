@@ -6,8 +6,8 @@ use super::curve::{Curve, KeyEntry, Stroke, XyPlot};
 
 /// Compression in maps of contacts (blue of Okabe and Ito); no other figure has it.
 pub(super) const COMPRESSION: &str = "#0072b2";
-/// Tension in maps of contacts (red of Okabe and Ito); no other figure has it.
-pub(super) const TENSION: &str = "#d55e00";
+/// Tension in maps of contacts (red); no other figure has it.
+pub(super) const TENSION: &str = "#c0281c";
 
 /// Colours of cases, distinct with any colour vision, without blue and red.
 const PALETTE: [[u8; 3]; 6] = [

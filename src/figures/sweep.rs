@@ -48,8 +48,8 @@ pub(super) struct Member {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sweep {
     pub(super) members: Vec<Member>,
-    /// Varying parameters: the horizontal axis first, then those that follow from it; nothing if only the load
-    /// reversal varies.
+    /// Varying parameters: the horizontal axis first, then parameters that follow from it; nothing if only
+    /// the load reversal varies.
     pub(super) differing: Vec<Varying>,
     /// Number of parameters that follow from the first one, as those of a `zip`.
     pub(super) following: usize,

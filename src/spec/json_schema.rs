@@ -150,8 +150,8 @@ fn zip() -> Value {
     let groups = json!({ "type": "array", "items": group, "minItems": 1 });
     json!({
         "anyOf": [group, groups],
-        "description": "Keys of the sweep whose arrays advance together instead of multiplying; several groups \
-             as an array of arrays.",
+        "description": "Keys of the sweep whose arrays advance together instead of multiplying; several \
+             groups as an array of arrays.",
     })
 }
 
@@ -267,8 +267,8 @@ fn figures() -> Value {
             },
             "across": {
                 "anyOf": [group, { "type": "array", "items": group, "minItems": 1 }],
-                "description": "Sweeps with figures of all of their cases together; several groups as an array \
-                     of arrays.",
+                "description": "Sweeps with figures of all of their cases together; several groups as an \
+                     array of arrays.",
             },
         },
         "description": "Files of the figures.",

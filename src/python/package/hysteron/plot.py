@@ -4,7 +4,7 @@
     run = hysteron.load("data/runs/quickstart")
     hysteron.plot.loop(run)
 
-The colour is the case (palette of Okabe and Ito), the dash is the branch: loading dashed, unloading solid. Each function draws into `ax`, or into new axes,
+The colour is the case, the dash is the branch: loading dashed, unloading solid. Each function draws into `ax`, or into new axes,
 and returns the axes.
 """
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 #: Colours of cases.
 PALETTE = ("#7b3294", "#009e73", "#e69f00", "#cc79a7", "#808000", "#6b472b")
 #: Compression and tension in maps.
-COMPRESSION, TENSION = "#0072b2", "#d55e00"
+COMPRESSION, TENSION = "#0072b2", "#c0281c"
 
 
 def _axes(ax: Axes | None) -> Axes:
@@ -139,8 +139,8 @@ def curves(run: Run, quantity: str = "area", ax: Axes | None = None) -> Axes:
 def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes | None = None) -> Axes:
     """Contact of one cycle at a stored step.
 
-    Contact spots of the asperity model are discs, blue if compressive and orange if tensile. Boundary elements have the real shapes from the stored maps,
-    coloured by the pressure: blue is compressive, orange tensile. These need h5py.
+    Contact spots of the asperity model are discs, blue if compressive and red if tensile. Boundary elements have the real shapes from the stored maps,
+    coloured by the pressure: blue is compressive, red tensile. These need h5py.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def _regions(maps: Maps, step: int | None, ax: Axes) -> Axes:
     touches = maps.in_contact()[k]
     pressure = 1e-6 * np.where(touches, maps.pressure_pa[k], np.nan)
     low, high = (float(extreme(pressure[touches], initial=0.0)) for extreme in (np.min, np.max))
-    shades = ["#be4600", "#fad0aa", "#ffffff", "#bed7ee", "#003c6e"]
+    shades = ["#a0140f", "#f6cec4", "#ffffff", "#bed7ee", "#003c6e"]
     colours = LinearSegmentedColormap.from_list("pressure", shades).with_extremes(bad="#f2f2f2")
     norm = TwoSlopeNorm(0.0, min(low, -1e-12 * max(high, 1.0)), max(high, 1e-12 * max(-low, 1.0)))
     side = 1e6 * maps.length_m
