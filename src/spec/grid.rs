@@ -17,9 +17,10 @@ use super::probe::check_contact;
 use super::scans::{check_measured, realizations as scan_realizations};
 use super::shape::{blamed, check_spectrum};
 use super::sides::Sides;
-use super::sweep::{AxisDraft, SweepDraft};
+use super::sweep::SweepDraft;
 use super::values::Values;
 use super::walk::{Draft, Origin, written};
+use super::zip::AxisDraft;
 use crate::model::{CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource};
 
 use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};

@@ -9,7 +9,8 @@ use toml::de::{DeTable, DeValue};
 use super::entries::{entries, keys, lost, shown};
 use super::fault::Faults;
 use super::keys::{KEYS, TABLES};
-use super::{Value, top, value, zip};
+use super::zip::{self, AxisDraft};
+use super::{top, value};
 
 /// A sweep whose values are read.
 pub(super) struct SweepDraft {
@@ -27,13 +28,6 @@ impl SweepDraft {
         let count = |group: &Vec<usize>| group.first().map_or(1, |axis| self.axes[*axis].values.len());
         self.together.iter().map(count)
     }
-}
-
-/// An axis whose values are read.
-pub(super) struct AxisDraft {
-    /// The key's place in [`KEYS`].
-    pub(super) key: usize,
-    pub(super) values: Vec<Spanned<Value>>,
 }
 
 /// Keys of a sweep.

@@ -2,12 +2,20 @@
 
 use std::ops::Range;
 
+use super::Value;
 use super::entries::{lost, shown};
 use super::fault::Faults;
 use super::keys::{KEYS, TABLES, find, names};
-use super::sweep::AxisDraft;
 use super::written::{Written, array, wrong_type};
+use toml::Spanned;
 use toml::de::DeValue;
+
+/// An axis whose values are read.
+pub(super) struct AxisDraft {
+    /// The key's place in [`KEYS`].
+    pub(super) key: usize,
+    pub(super) values: Vec<Spanned<Value>>,
+}
 
 /// Fewest keys of a group.
 const FEWEST: usize = 2;
