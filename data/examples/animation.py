@@ -39,7 +39,7 @@ def animated(attribute, values):
 def path(branch, dash):
     """A branch of the loop."""
     points = " ".join(f"{x:.1f},{y:.1f}" for x, y, step in zip(at_x, at_y, steps, strict=True) if step["branch"] == branch)
-    return f'<polyline points="{points}" fill="none" stroke="#0072b2" stroke-width="2" stroke-dasharray="{dash}"/>'
+    return f'<polyline points="{points}" fill="none" stroke="#7b3294" stroke-width="2" stroke-dasharray="{dash}"/>'
 
 
 def spots(k):
@@ -48,7 +48,7 @@ def spots(k):
     for spot in contacts:
         if spot["step"] == steps[k]["step"] and spot["state"] == "contact":
             x, y = (spot[name] / length * SIDE for name in ("centroid_x_m", "centroid_y_m"))
-            colour = "#d55e00" if spot["load_n"] < 0 else "#0072b2"
+            colour = "#c0281c" if spot["load_n"] < 0 else "#0072b2"
             circles += f'<circle cx="{x:.1f}" cy="{SIDE - y:.1f}" r="{spot["contact_radius_m"] / length * SIDE:.1f}" fill="{colour}"/>'
     return circles
 
@@ -69,6 +69,6 @@ for frame, k in enumerate(kept):
     svg += f'<g fill-opacity="0.85" visibility="{"visible" if k == still else "hidden"}">{spots(k)}{animated("visibility", visible)}</g>\n'
 svg += f"""</svg><rect x="340" y="20" width="{SIDE}" height="{SIDE}" fill="none" stroke="black"/>
 <g font-size="12"><circle cx="350" cy="304" r="6" fill="#0072b2"/><text x="361" y="308">compressive</text>
-<circle cx="454" cy="304" r="6" fill="#d55e00"/><text x="465" y="308">tensile</text><text x="600" y="308" text-anchor="end">side {1e3 * length:.3g} mm</text></g></svg>
+<circle cx="454" cy="304" r="6" fill="#c0281c"/><text x="465" y="308">tensile</text><text x="600" y="308" text-anchor="end">side {1e3 * length:.3g} mm</text></g></svg>
 """
 figure.write_text(svg, encoding="utf-8")

@@ -71,9 +71,9 @@ impl Stage {
             Self::Extract => 3,
             // 18: status and cause of each event, estimates of the cycle.
             Self::Cycle => 18,
-            // 14: grid errors, numbers of surfaces behind works of adhesion.
-            Self::Aggregate => 14,
-            Self::Report => 16,
+            // 15: events of all cycles in one table.
+            Self::Aggregate => 15,
+            Self::Report => 17,
         }
     }
 }

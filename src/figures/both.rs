@@ -3,9 +3,9 @@
 use super::axis::Axis;
 use super::curve::{Stroke, XyPlot};
 use super::drawing::Drawing;
-use super::map::{ABOVE, GAP, LEGEND, PULLED, PUSHED, SIDE, circles, legend, scale_bar, sheet};
+use super::map::{ABOVE, GAP, LEGEND, SIDE, circles, legend, scale_bar, sheet};
 use super::panels::Panel;
-use super::style::{OTHER, RESULT, THEORY, curve, plot, shade};
+use super::style::{COMPRESSION, OTHER, RESULT, TENSION, THEORY, curve, plot, shade};
 use super::{FigureError, markup};
 use crate::store::{Frame, LoopMaps};
 use ndarray::ArrayView2;
@@ -72,7 +72,7 @@ fn cells(of: &LoopMaps) -> String {
     };
     let size = SIDE / cells as f64;
     let mut svg = String::new();
-    for (hue, wanted) in [(PUSHED, 1), (PULLED, -1)] {
+    for (hue, wanted) in [(COMPRESSION, 1), (TENSION, -1)] {
         let _ = write!(svg, "<path fill=\"{hue}\" fill-opacity=\"0.85\" d=\"");
         for j in 0..cells {
             let mut i = 0;

@@ -68,6 +68,12 @@ fn plain(label: &str) -> String {
         .fold(symbol.to_owned(), |text, (marked, plain)| text.replace(marked, plain))
 }
 
+/// Names of sweeps that are joined by `+`, as a sentence of a caption.
+pub(super) fn of_sweeps(joined: &str) -> String {
+    let plural = if joined.contains('+') { "s" } else { "" };
+    format!(" Sweep{plural} {}.", joined.replace('+', ", "))
+}
+
 /// Table of the points of a panel of a report.
 pub(super) fn data(name: &str) -> String {
     format!(" Data: statistics/panels.parquet (panel {name}).")
@@ -76,7 +82,7 @@ pub(super) fn data(name: &str) -> String {
 /// The cases of a sweep: `, for ζ = 32, 64`.
 fn cases(sweep: &Sweep) -> String {
     let mut parts = Vec::new();
-    for parameter in &sweep.differing {
+    for (at, parameter) in sweep.differing.iter().enumerate() {
         let mut places: Vec<usize> = (0..sweep.members.len()).collect();
         match &parameter.values {
             Values::Numbers(numbers) => places
@@ -89,14 +95,20 @@ fn cases(sweep: &Sweep) -> String {
             .map(|place| parameter.text(place))
             .collect();
         texts.dedup();
-        parts.push(match texts[..] {
+        let values = match texts[..] {
             [first, .., last] if texts.len() > MOST_VALUES => {
                 format!("{} = {first} to {last} ({} values)", parameter.symbol, texts.len())
             }
             _ => format!("{} = {}", parameter.symbol, texts.join(", ")),
-        });
+        };
+        let before = match at {
+            0 => ", for ",
+            at if at <= sweep.following => " with ",
+            _ => "; ",
+        };
+        parts.push(format!("{before}{values}"));
     }
-    if parts.is_empty() { String::new() } else { format!(", for {}", parts.join("; ")) }
+    parts.concat()
 }
 
 /// Caption of a panel of the branches of a loop, by the name of the panel.

@@ -61,8 +61,8 @@ fn panel(name: &str, caption: String, plot: XyPlot) -> Panel {
     Panel::alone(name, caption, XyPlot { stem: format!("closer_{name}"), ..plot })
 }
 
-/// A branch, its hue, and its events as places in their table.
-type OfBranch = (&'static str, [u8; 3], Vec<usize>);
+/// A branch, and its events as places in their table.
+type OfBranch = (&'static str, Vec<usize>);
 
 /// Events of the loop, by branch.
 fn branches(of: &Closer<'_>, turning: Option<i64>) -> Result<[OfBranch; 2], FigureError> {
@@ -74,7 +74,7 @@ fn branches(of: &Closer<'_>, turning: Option<i64>) -> Result<[OfBranch; 2], Figu
     let loading = all().filter(|k| branches[*k] == "loading" && steps[*k] <= turning).collect();
     let unloading =
         all().filter(|k| branches[*k] == "unloading" && max_loads[*k] == Some(of.max_load)).collect();
-    Ok([("loading", OTHER, loading), ("unloading", RESULT, unloading)])
+    Ok([("loading", loading), ("unloading", unloading)])
 }
 
 /// Hysteresis loop: load over penetration, up to the load reversal and back.
@@ -118,7 +118,7 @@ pub(super) fn of_loop(steps: &Frame, max_load: f64) -> Result<XyPlot, FigureErro
 fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureError> {
     let (approaches, energies) = (of.events.f64("approach_m")?, of.events.f64("energy_lost_j")?);
     let (mut curves, mut all, mut drawn) = (Vec::new(), 0, 0);
-    for (name, hue, rows) in branches {
+    for (name, rows) in branches {
         let mut lost: Vec<(f64, f64)> = rows
             .iter()
             .map(|k| (approaches[*k] / of.rms_height_m, energies[*k] / of.energy_j))
@@ -128,8 +128,8 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
         lost.sort_by(|u, v| v.1.total_cmp(&u.1).then(u.0.total_cmp(&v.0)));
         lost.truncate(MOST_POINTS);
         drawn += lost.len();
-        let stroke = if *hue == OTHER { Stroke::Diamonds } else { Stroke::Points };
-        curves.push(curve(name, "", lost, shade(*hue, 0, 1), stroke));
+        let stroke = if *name == "loading" { Stroke::Diamonds } else { Stroke::Points };
+        curves.push(curve(name, "", lost, shade(RESULT, 0, 1), stroke));
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -147,7 +147,7 @@ fn events(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, FigureErr
         x,
         y,
         curves,
-        &[("loading", OTHER, Stroke::Diamonds), ("unloading", RESULT, Stroke::Points)],
+        &[("loading", RESULT, Stroke::Diamonds), ("unloading", RESULT, Stroke::Points)],
     ))
 }
 
@@ -156,7 +156,7 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
     let ids = of.events.i64("avalanche_id")?;
     let mut curves = Vec::new();
     let mut total = 0;
-    for (name, hue, rows) in branches {
+    for (name, rows) in branches {
         let mut sizes: BTreeMap<i64, usize> = BTreeMap::new();
         for k in rows {
             *sizes.entry(ids[*k]).or_default() += 1;
@@ -167,8 +167,8 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
         let mut points: Vec<(f64, f64)> =
             sizes.iter().enumerate().map(|(k, size)| (*size as f64, (sizes.len() - k) as f64)).collect();
         points.dedup_by_key(|point| point.0);
-        let stroke = if *hue == OTHER { Stroke::Dashed } else { Stroke::Solid };
-        curves.push(Curve { marked: true, ..curve(name, "", points, shade(*hue, 0, 1), stroke) });
+        let stroke = if *name == "loading" { Stroke::Dashed } else { Stroke::Solid };
+        curves.push(Curve { marked: true, ..curve(name, "", points, shade(RESULT, 0, 1), stroke) });
     }
     let points = || curves.iter().flat_map(|curve: &Curve| curve.points.iter());
     let (x, y) = (
@@ -180,7 +180,7 @@ fn avalanches(of: &Closer<'_>, branches: &[OfBranch; 2]) -> Result<XyPlot, Figur
         x,
         y,
         curves,
-        &[("loading", OTHER, Stroke::Dashed), ("unloading", RESULT, Stroke::Solid)],
+        &[("loading", RESULT, Stroke::Dashed), ("unloading", RESULT, Stroke::Solid)],
     ))
 }
 

@@ -13,7 +13,7 @@ const CELLS: usize = 128;
 const LEVELS: usize = 6;
 /// Ends of the scales of compression and tension, those of the loop explorer.
 const COMPRESSIVE: [[f64; 3]; 2] = [[190.0, 215.0, 238.0], [0.0, 60.0, 110.0]];
-const TENSILE: [[f64; 3]; 2] = [[250.0, 208.0, 170.0], [190.0, 70.0, 0.0]];
+const TENSILE: [[f64; 3]; 2] = [[246.0, 206.0, 196.0], [160.0, 20.0, 15.0]];
 /// Surface out of contact.
 const APART: &str = "#f2f2f2";
 

@@ -2,6 +2,7 @@
 
 use super::cycle_loop::{Closer, Kept};
 use super::drawing::Drawing;
+use super::style::{COMPRESSION, TENSION};
 use super::{FigureError, markup};
 use crate::stats::{labels_with_unit, significant};
 use crate::store::Frame;
@@ -22,9 +23,6 @@ const SHADES: usize = 12;
 
 /// Spots on one map, at most: the largest are drawn.
 const MOST_SPOTS: usize = 4000;
-
-pub(super) const PUSHED: &str = "#0072b2";
-pub(super) const PULLED: &str = "#d55e00";
 
 /// The contact spots at each landmark whose spots were kept, over the heights as shades of grey, the lower
 /// the darker, with crosses at the absorbed asperities; nothing where none were kept.
@@ -135,9 +133,9 @@ pub(super) fn legend(foot: f64, heights_m: ArrayView2<'_, f64>) -> String {
     let [low, high] =
         [low, high].map(|height| labels_with_unit("height_m", &[rounded(height)]).concat().replace('-', "−"));
     let mut svg = format!(
-        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PUSHED}\"/>\
+        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{COMPRESSION}\"/>\
          <text x=\"{}\" y=\"{foot}\" font-size=\"13\">compressive</text>\
-         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{PULLED}\"/>\
+         <circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{TENSION}\"/>\
          <text x=\"{}\" y=\"{foot}\" font-size=\"13\">tensile</text>\
          <path d=\"M{} {}l6 6m0 -6l-6 6\" stroke=\"black\"/><text x=\"{}\" y=\"{foot}\" \
          font-size=\"13\">absorbed by a larger contact</text>",
@@ -242,7 +240,7 @@ pub(super) fn circles(
     spots.truncate(MOST_SPOTS);
     let mut svg = String::new();
     let shifts: &[f64] = if periodic { &[-SIDE, 0.0, SIDE] } else { &[0.0] };
-    for (hue, wanted) in [(PUSHED, false), (PULLED, true)] {
+    for (hue, wanted) in [(COMPRESSION, false), (TENSION, true)] {
         let _ = write!(svg, "<g fill=\"{hue}\" fill-opacity=\"0.85\">");
         for (x, y, r, _) in spots.iter().filter(|spot| spot.3 == wanted) {
             for (dx, dy) in shifts.iter().flat_map(|dx| shifts.iter().map(move |dy| (dx, dy))) {

@@ -1,9 +1,10 @@
 //! Figures: five panels for each sweep, in the style of Figs 3 to 5 of the paper, and panels of a single
 //! cycle.
 //!
-//! The colour is the case (palette of Okabe and Ito; numbers in their order along a scale), or with several
-//! varying parameters the series. The dash is the branch: loading dashed, unloading solid. Analytical models
-//! are black. Lower loads of one case are lighter, and each curve has its label at the end.
+//! The colour is the case (a palette; numbers in their order along a scale), or with several varying
+//! parameters the series. The dash is the branch: loading dashed, unloading solid. Analytical models are
+//! black. Blue and red are compression and tension, in maps only. Lower loads of one case are lighter, and
+//! each curve has its label at the end; loads whose curves coincide share one.
 
 mod axis;
 mod both;
@@ -23,6 +24,7 @@ mod key;
 mod map;
 mod marks;
 mod markup;
+mod notes;
 mod panels;
 mod paths;
 mod plot;

@@ -1,16 +1,19 @@
 //! The five panels of a sweep: the four of the paper, and the dissipated energy by branch.
 
 use super::FigureError;
-use super::captions::{data, of_sweep};
+use super::captions::{data, of_sweep, of_sweeps};
 use super::curve::{Stroke, XyPlot};
 use super::markup::described;
+use super::notes::shared;
 use super::paths::paths;
 use super::plot::{plot_xy, width_beside};
 use super::results::{Measured, Predicted, results};
 use super::sizes::sizes;
 use super::sweep::{Member, Sweep, Tables};
 use super::units::{Quantity, Scales, Units};
+use crate::stats::sweeps;
 use crate::store::Frame;
+use crate::text::counted;
 
 /// A panel that has been drawn.
 #[derive(Debug, Clone)]
@@ -46,9 +49,10 @@ impl Panel {
     }
 }
 
-/// Draws the panels of one sweep: `<sweep>_A` area over load, `<sweep>_B` pull-off force, `<sweep>_C`
-/// penetration over load, `<sweep>_D` dissipated energy, with the prediction of Deng and Kesari, `<sweep>_E`
-/// its fraction on each branch, `<sweep>_F` the sizes of avalanches; in other units with an ending.
+/// Draws the panels of one sweep, or of several whose names are joined by `+`: `<sweep>_A` area over load,
+/// `<sweep>_B` pull-off force, `<sweep>_C` penetration over load, `<sweep>_D` dissipated energy, with the
+/// prediction of Deng and Kesari, `<sweep>_E` its fraction on each branch, `<sweep>_F` the sizes of
+/// avalanches; in other units with an ending.
 ///
 /// The horizontal axis of B, D and E is the parameter that varies; if only the load reversal varies, it is
 /// the area at the end of loading. If several parameters vary, the one with most values is the axis, the
@@ -64,16 +68,20 @@ impl Panel {
 /// If no case belongs to the sweep, or a table lacks a column.
 pub fn panels(tables: &Tables<'_>, sweep: &str, units: Units) -> Result<Vec<Panel>, FigureError> {
     let found = Sweep::find(tables, sweep)?;
-    let done = tables.cases.i64("done_count")?;
-    if found.members.iter().all(|member| done.get(member.row).is_none_or(|count| *count == 0)) {
+    if found.members.iter().all(|member| !member.is_finished) {
         return Ok(Vec::new());
     }
     let stem: String = if sweep.is_empty() { "run" } else { sweep }
         .chars()
-        .map(|letter| if letter.is_ascii_alphanumeric() || letter == '-' { letter } else { '_' })
+        .map(|letter| match letter {
+            '+' => '-',
+            letter if letter.is_ascii_alphanumeric() || letter == '-' => letter,
+            _ => '_',
+        })
         .collect();
     let mut panels = drawn(tables, &found, &stem, units)?;
-    panels.iter_mut().for_each(|panel| panel.caption += &data(&panel.name));
+    let name = if sweeps(tables.cases)?.len() > 1 { of_sweeps(sweep) } else { String::new() };
+    panels.iter_mut().for_each(|panel| panel.caption += &format!("{name}{}", data(&panel.name)));
     Ok(panels)
 }
 
@@ -87,13 +95,14 @@ pub fn compared(tables: &Tables<'_>, labels: &[String], stem: &str) -> Result<Ve
 }
 
 fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result<Vec<Panel>, FigureError> {
-    let surfaces = surfaces(tables.cases, found)?;
+    let (surfaces, failures) = (surfaces(tables.cases, found)?, failures(tables.cases, found)?);
     let scales = Scales::of(tables, found, units)?;
     let mut plots = plots(tables, found, &scales)?;
     // Surfaces of different size have no common scale.
     plots.retain(|(_, plot)| {
         units == Units::Dimensionless || plot.curves.iter().any(|curve| !curve.points.is_empty())
     });
+    plots.iter_mut().for_each(|(_, plot)| plot.notes = shared(plot));
     // Adjacent panels have the same size.
     let margin = plots.iter().map(|(_, plot)| width_beside(plot)).fold(0.0, f64::max);
     // Where only the load varies, labels are numbers.
@@ -103,7 +112,7 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result
         (label, false) => label.to_owned(),
     };
     let mut cases: Vec<(String, String)> = Vec::new();
-    for member in &found.members {
+    for member in found.members.iter().filter(|member| member.is_finished) {
         let label = if found.has_facets { member.series.clone() } else { named(member) };
         if !cases.iter().any(|(known, _)| *known == label) {
             cases.push((label, member.colour.clone()));
@@ -114,7 +123,7 @@ fn drawn(tables: &Tables<'_>, found: &Sweep, stem: &str, units: Units) -> Result
         let name = format!("{name}{}", units.ending());
         let stem = format!("{stem}_{name}");
         let plot = XyPlot { letter, stem: stem.clone(), margin, ..plot };
-        let caption = of_sweep(letter, found, &surfaces, (&plot, &scales));
+        let caption = of_sweep(letter, found, &surfaces, (&plot, &scales)) + &failures;
         Panel {
             stem,
             name,
@@ -195,6 +204,29 @@ fn plots(
 fn numbered(letter: &str, plots: Vec<XyPlot>) -> Vec<(String, XyPlot)> {
     let name = |k| if k == 0 { letter.to_owned() } else { format!("{letter}{}", k + 1) };
     plots.into_iter().enumerate().map(|(k, plot)| (name(k), plot)).collect()
+}
+
+/// Cases of a sweep without a finished cycle, as a sentence; empty if there are none.
+fn failures(cases: &Frame, sweep: &Sweep) -> Result<String, FigureError> {
+    let failed = cases.i64("failed_count")?;
+    let count = |fits: &dyn Fn(&Member) -> bool| {
+        let mut ids: Vec<&str> = sweep
+            .members
+            .iter()
+            .filter(|member| fits(member))
+            .map(|member| member.case_id.as_str())
+            .collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids.len()
+    };
+    let all = counted(count(&|_| true), "case");
+    let sentence = |number: usize, state: &str| match number {
+        0 => String::new(),
+        _ => format!(" {number} of {all} {state}: not drawn."),
+    };
+    let text = sentence(count(&|of| !of.is_finished && failed[of.row] > 0), "failed");
+    Ok(text + &sentence(count(&|of| !of.is_finished && failed[of.row] == 0), "not computed"))
 }
 
 /// Number of surfaces of the means of a sweep.

@@ -3,7 +3,7 @@
 use super::FigureError;
 use super::axis::Axis;
 use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
-use super::style::{MOST_NOTES, NEUTRAL, curve, entry};
+use super::style::{NEUTRAL, curve, entry};
 use super::sweep::{Member, Sweep};
 use super::units::{Quantity, Scales};
 use crate::store::Frame;
@@ -61,16 +61,15 @@ pub(super) fn with_loading<'a>(members: &[&'a Member]) -> impl Iterator<Item = &
     (0..members.len()).filter(is_last).map(|k| members[k])
 }
 
-/// Names of members at the ends of their curves, as far as they have room.
+/// Names of finished members at the ends of their curves.
 pub(super) fn noted<'a>(
     sweep: &Sweep,
     members: impl IntoIterator<Item = &'a Member>,
     curves: &[Curve],
 ) -> Vec<Note> {
-    let (beside, every) = (!sweep.differing.is_empty(), curves.len().div_ceil(MOST_NOTES));
-    let named =
-        members.into_iter().zip(curves).enumerate().filter(|(at, _)| curves.len() > 1 && at % every == 0);
-    let note = |(_, (member, curve)): (usize, (&Member, &Curve))| {
+    let beside = !sweep.differing.is_empty();
+    let named = members.into_iter().zip(curves).filter(|_| curves.len() > 1);
+    let note = |(member, curve): (&Member, &Curve)| {
         let text = if sweep.has_facets { &member.series } else { &member.label };
         curve.points.first().map(|end| Note { at: *end, text: text.clone(), beside })
     };
@@ -92,16 +91,17 @@ pub(super) fn facets(sweep: &Sweep) -> Vec<Vec<&Member>> {
         return vec![sweep.members.iter().collect()];
     }
     let places = places(sweep);
-    let last = places.len() - 1;
+    let last = places.len().saturating_sub(1);
     let shown = places.len().min(MOST_FACETS);
     let at = |k: usize| places[if shown > 1 { k * last / (shown - 1) } else { 0 }];
     let members = |x: f64| sweep.members.iter().filter(|one| one.x.total_cmp(&x).is_eq()).collect();
     (0..shown).map(at).map(members).collect()
 }
 
-/// Different values of the first parameter, in ascending order.
+/// Different values of the first parameter with finished cases, in ascending order.
 pub(super) fn places(sweep: &Sweep) -> Vec<f64> {
-    let mut places: Vec<f64> = sweep.members.iter().map(|member| member.x).collect();
+    let finished = sweep.members.iter().filter(|member| member.is_finished);
+    let mut places: Vec<f64> = finished.map(|member| member.x).collect();
     places.sort_by(f64::total_cmp);
     places.dedup_by(|a, b| a.total_cmp(b).is_eq());
     places

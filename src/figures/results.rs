@@ -4,7 +4,7 @@ use super::FigureError;
 use super::axis::Axis;
 use super::curve::{Curve, KeyEntry, Note, Stroke, XyPlot};
 use super::paths::unnamed;
-use super::style::{MOST_NOTES, NEUTRAL, THEORY, curve, entry, shade};
+use super::style::{NEUTRAL, THEORY, curve, entry, shade};
 use super::sweep::{Member, Sweep, Tables};
 use super::units::{Quantity, Scales};
 use crate::stats::{FEW, singles};
@@ -66,14 +66,17 @@ pub(super) fn results(
     for theory in theories {
         predict(tables, sweep, &series, *theory, &unit, &mut predicted)?;
     }
-    let (mut computed, lines) = (Drawn::default(), measured.len());
+    let mut computed = Drawn::default();
     for of in measured {
         match scales.column(of.name) {
             Some((column, factor)) => {
-                measure(tables, sweep, &series, of, (column, &|_| Some(factor), lines), &mut computed)?;
+                measure(tables, sweep, &series, of, (column, &|_| Some(factor)), &mut computed)?;
             }
-            None => measure(tables, sweep, &series, of, (of.name, &unit, lines), &mut computed)?,
+            None => measure(tables, sweep, &series, of, (of.name, &unit), &mut computed)?,
         }
+    }
+    if measured.len() > 1 {
+        computed.notes = highest(&computed.notes);
     }
     let crosses = computed.curves.iter().any(|curve| curve.stroke == Stroke::Crosses);
     let cut = computed.curves.iter().any(Curve::is_cut);
@@ -91,6 +94,12 @@ pub(super) fn results(
         .with_headroom(room);
     let x = sweep.axis.clone();
     Ok(XyPlot { notes: [computed.notes, predicted.notes].concat(), ..unnamed([x, y], curves, key) })
+}
+
+/// The highest of the notes with the same text: lines of one series differ in their strokes alone.
+fn highest(notes: &[Note]) -> Vec<Note> {
+    let is_lower = |note: &Note| notes.iter().any(|other| other.text == note.text && other.at.1 > note.at.1);
+    notes.iter().filter(|note| !is_lower(note)).cloned().collect()
 }
 
 /// Factor of the values of a row of the table `cases`.
@@ -139,28 +148,27 @@ fn predict(
     Ok(())
 }
 
-/// Means of a result, by its column, the factor of its values and the number of lines of each series, with
-/// error bars, or with crosses where there are too few surfaces for these.
+/// Means of a result, by its column and the factor of its values, with error bars, or with crosses where
+/// there are too few surfaces for these.
 fn measure(
     tables: &Tables<'_>,
     sweep: &Sweep,
     series: &[&str],
     of: &Measured,
-    (source, unit, lines): (&str, Unit<'_>, usize),
+    (source, unit): (&str, Unit<'_>),
     drawn: &mut Drawn,
 ) -> Result<(), FigureError> {
     let Measured { name, text, stroke, positive } = *of;
     let column = |end: &str| tables.cases.f64_or_null(&format!("{source}_{end}"));
     let (means, sds) = (column("mean")?, column("sd")?);
     let mut spread = false;
-    for (at, series_name) in series.iter().enumerate() {
+    for series_name in series {
         let members: Vec<&Member> =
             joined(sweep, series_name).filter(|member| point(means, member, unit).is_some()).collect();
         let points: Vec<(f64, f64)> =
             members.iter().filter_map(|member| point(means, member, unit)).collect();
         if let Some(end) = points.last()
             && series.len() > 1
-            && at % (series.len() * lines).div_ceil(MOST_NOTES) == 0
         {
             drawn.notes.push(Note { at: *end, text: (*series_name).to_owned(), beside: true });
         }

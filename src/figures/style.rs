@@ -1,18 +1,22 @@
-//! The hues and strokes of the figures: the colour is the case, the dash is the branch.
+//! The hues and strokes of the figures: the colour is the case, the dash is the branch; blue and red are
+//! compression and tension.
 
 use super::axis::Axis;
 use super::curve::{Curve, KeyEntry, Stroke, XyPlot};
 
-/// Colours of cases, distinct with any colour vision (Okabe and Ito); yellow is left out, since it is too
-/// pale on white.
-const PALETTE: [[u8; 3]; 7] = [
-    [0x00, 0x72, 0xb2],
-    [0xd5, 0x5e, 0x00],
+/// Compression in maps of contacts (blue of Okabe and Ito); no other figure has it.
+pub(super) const COMPRESSION: &str = "#0072b2";
+/// Tension in maps of contacts (red); no other figure has it.
+pub(super) const TENSION: &str = "#c0281c";
+
+/// Colours of cases, distinct with any colour vision, without blue and red.
+const PALETTE: [[u8; 3]; 6] = [
+    [0x7b, 0x32, 0x94],
     [0x00, 0x9e, 0x73],
-    [0xcc, 0x79, 0xa7],
-    [0x56, 0xb4, 0xe9],
     [0xe6, 0x9f, 0x00],
-    [0x00, 0x00, 0x00],
+    [0xcc, 0x79, 0xa7],
+    [0x80, 0x80, 0x00],
+    [0x6b, 0x47, 0x2b],
 ];
 
 /// Simulation results of a figure with one case.
@@ -45,14 +49,14 @@ pub(super) fn case_colour(place: usize, load: usize, loads: usize) -> String {
 /// Number of colours from which on numbers have a scale instead of the palette.
 const SCALE_FROM: usize = 3;
 
-/// Scale of numbers, from dark to light with any colour vision (viridis, without its pale end).
+/// Scale of numbers, from dark to light with any colour vision: purple, grey, green and yellow.
 const SCALE: [[f64; 3]; 6] = [
-    [68.0, 1.0, 84.0],
-    [65.0, 68.0, 135.0],
-    [42.0, 120.0, 142.0],
-    [34.0, 168.0, 132.0],
-    [122.0, 196.0, 70.0],
-    [196.0, 190.0, 20.0],
+    [84.0, 20.0, 100.0],
+    [98.0, 72.0, 112.0],
+    [80.0, 115.0, 95.0],
+    [50.0, 150.0, 90.0],
+    [140.0, 182.0, 60.0],
+    [218.0, 184.0, 30.0],
 ];
 
 /// The colour of one of several series: of numbers in their order along a scale, else of the palette; of one

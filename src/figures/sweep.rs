@@ -2,6 +2,7 @@
 
 use super::FigureError;
 use super::axis::Axis;
+use super::notes::LOAD;
 use super::style::{case_colour, series_colour};
 use crate::stats::{Values, Varying, loads, varying};
 use crate::store::Frame;
@@ -37,6 +38,8 @@ pub(super) struct Member {
     pub(super) series: String,
     /// Value along the horizontal axis, as a label.
     pub(super) facet: String,
+    /// True if a cycle of the case is finished.
+    pub(super) is_finished: bool,
     /// Places among the values of the parameters besides `x`.
     rank: Vec<usize>,
 }
@@ -45,8 +48,11 @@ pub(super) struct Member {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sweep {
     pub(super) members: Vec<Member>,
-    /// Varying parameters, the horizontal axis first; nothing if only the load reversal varies.
+    /// Varying parameters: the horizontal axis first, then parameters that follow from it; nothing if only
+    /// the load reversal varies.
     pub(super) differing: Vec<Varying>,
+    /// Number of parameters that follow from the first one, as those of a `zip`.
+    pub(super) following: usize,
     /// True if several parameters vary, and not together: the colour is that of the series, and the panels of
     /// paths have one value of the horizontal axis each.
     pub(super) has_facets: bool,
@@ -64,17 +70,19 @@ fn unknown(name: &str, sweeps: &[&str]) -> FigureError {
 }
 
 impl Sweep {
-    /// Finds the members of a sweep.
+    /// Finds the members of a sweep, or of several whose names are joined by `+`.
     pub(super) fn find(tables: &Tables<'_>, name: &str) -> Result<Self, FigureError> {
         let cases = tables.cases;
-        let (rows, differing) = chosen(tables, name)?;
+        let (rows, mut differing) = chosen(tables, name)?;
+        let following = following(&mut differing);
         let (ids, max_loads, loads) = (cases.text("case_id")?, cases.f64("max_load")?, loads(cases)?);
         let area = cases.f64_or_null("area_at_max_load_mean")?;
+        let done = cases.i64("done_count")?;
         let load_labels = loads.labels(rows.iter().copied());
         let load_of = |row: &usize| loads.values.get(*row).copied().unwrap_or_default();
         let many_loads = rows.windows(2).any(|pair| load_of(&pair[0]) != load_of(&pair[1]));
         let words = words(differing.first());
-        let ranks: Vec<Vec<usize>> = differing.iter().skip(1).map(ranks).collect();
+        let ranks: Vec<Vec<usize>> = differing.iter().skip(1 + following).map(ranks).collect();
         let mut members = Vec::new();
         for (place, row) in rows.iter().enumerate() {
             let x = match differing.first().map(|first| &first.values) {
@@ -86,7 +94,7 @@ impl Sweep {
                 None => area.get(*row).copied().flatten(),
             };
             let load = load_labels.get(place).map(String::as_str).filter(|_| many_loads);
-            let [label, series] = named(&differing, place, load);
+            let [label, series] = named(&differing, following, place, load);
             members.push(Member {
                 row: *row,
                 case_id: ids.get(*row).copied().unwrap_or_default().to_owned(),
@@ -96,7 +104,8 @@ impl Sweep {
                 label,
                 colour: String::new(),
                 series,
-                facet: differing.first().map_or_else(String::new, |first| first.named(place)),
+                facet: said(&differing[..differing.len().min(1 + following)], place).join(", "),
+                is_finished: done.get(*row).is_some_and(|count| *count > 0),
                 rank: ranks.iter().map(|rank| rank[place]).collect(),
             });
         }
@@ -109,9 +118,9 @@ impl Sweep {
                 .then(a.case_id.cmp(&b.case_id))
         });
         let axis = axis(&differing, words, &members);
-        let has_facets = is_grid(&members, &differing);
-        colour(&mut members, &differing, has_facets);
-        Ok(Self { members, differing, has_facets, load_symbol: loads.symbol, axis })
+        let has_facets = is_grid(&members);
+        colour(&mut members, &differing, following, has_facets);
+        Ok(Self { members, differing, following, has_facets, load_symbol: loads.symbol, axis })
     }
 
     /// True if lines join the results: not between categories.
@@ -132,6 +141,7 @@ impl Sweep {
             // Runs are not joined by a line.
             series: label.clone(),
             facet: String::new(),
+            is_finished: true,
             rank: Vec::new(),
         };
         let differing = vec![Varying::named_as(["campaign", "run", "run"], Values::Words(labels.to_vec()))];
@@ -139,6 +149,7 @@ impl Sweep {
         Ok(Self {
             members,
             differing,
+            following: 0,
             has_facets: false,
             load_symbol: "",
             axis: Axis::of_words("run", labels.to_vec()),
@@ -151,11 +162,12 @@ impl Sweep {
 fn chosen(tables: &Tables<'_>, name: &str) -> Result<(Vec<usize>, Vec<Varying>), FigureError> {
     let cases = tables.cases;
     let sweeps = cases.text("sweep")?;
-    let belongs = |joined: &str| joined.split('+').any(|one| one == name);
-    let mut rows: Vec<usize> = (0..sweeps.len()).filter(|row| belongs(sweeps[*row])).collect();
-    if rows.is_empty() {
-        return Err(unknown(name, &sweeps));
+    let belongs = |joined: &str, name: &str| joined.split('+').any(|one| one == name);
+    if let Some(missing) = name.split('+').find(|name| !sweeps.iter().any(|joined| belongs(joined, name))) {
+        return Err(unknown(missing, &sweeps));
     }
+    let is_chosen = |joined: &str| name.split('+').any(|name| belongs(joined, name));
+    let mut rows: Vec<usize> = (0..sweeps.len()).filter(|row| is_chosen(sweeps[*row])).collect();
     let mut differing = varying(cases, &rows)?;
     if !differing.is_empty() && !tables.all_loads {
         let (ids, loads) = (cases.text("case_id")?, cases.f64("max_load")?);
@@ -171,16 +183,31 @@ fn chosen(tables: &Tables<'_>, name: &str) -> Result<(Vec<usize>, Vec<Varying>),
     Ok((rows, differing))
 }
 
-/// Label of all that varies, and of all but the first parameter.
-fn named(differing: &[Varying], place: usize, load: Option<&str>) -> [String; 2] {
-    let said = |of: &[Varying]| -> Vec<String> {
-        let present = of.iter().filter(|parameter| !parameter.is_absent(place));
-        present.map(|parameter| parameter.named(place)).collect()
+/// Puts the parameters of which each value of the first one has one value next to it; gives their number.
+fn following(differing: &mut [Varying]) -> usize {
+    let Some((first, others)) = differing.split_first_mut() else { return 0 };
+    let of_first = ranks(first);
+    let follows = |of: &Varying| {
+        let own = ranks(of);
+        (0..own.len()).all(|a| (0..a).all(|b| of_first[a] != of_first[b] || own[a] == own[b]))
     };
-    let mut parts = [said(differing), said(differing.get(1..).unwrap_or_default())];
+    others.sort_by_cached_key(|of| !follows(of));
+    others.iter().filter(|of| follows(of)).count()
+}
+
+/// Values of parameters that a case has.
+fn said(of: &[Varying], place: usize) -> Vec<String> {
+    let present = of.iter().filter(|parameter| !parameter.is_absent(place));
+    present.map(|parameter| parameter.named(place)).collect()
+}
+
+/// Label of all that varies, and of what does not follow from the first parameter.
+fn named(differing: &[Varying], following: usize, place: usize, load: Option<&str>) -> [String; 2] {
+    let free = differing.get(1 + following..).unwrap_or_default();
+    let mut parts = [said(differing, place), said(free, place)];
     match load {
         Some(load) if differing.is_empty() => parts[0].push(load.to_owned()),
-        Some(load) => parts.iter_mut().for_each(|parts| parts.push(format!("F_{{max}} = {load}"))),
+        Some(load) => parts.iter_mut().for_each(|parts| parts.push(format!("{LOAD}{load}"))),
         None => {}
     }
     parts.map(|parts| parts.join(", "))
@@ -209,14 +236,14 @@ fn count(of: &Varying) -> usize {
 }
 
 /// True if several parameters vary, and a value of the first one has several cases.
-fn is_grid(members: &[Member], differing: &[Varying]) -> bool {
+fn is_grid(members: &[Member]) -> bool {
     let share = |a: &Member, b: &Member| a.x.total_cmp(&b.x).is_eq() && a.rank != b.rank;
-    differing.len() > 1 && members.iter().any(|a| members.iter().any(|b| share(a, b)))
+    members.iter().any(|a| members.iter().any(|b| share(a, b)))
 }
 
 /// Colours the members: a colour for each value of what varies, with several parameters for each series, and
 /// for each load where only the load varies. Numbers have colours in their order.
-fn colour(members: &mut [Member], differing: &[Varying], by_series: bool) {
+fn colour(members: &mut [Member], differing: &[Varying], following: usize, by_series: bool) {
     let mut loads: Vec<f64> = members.iter().map(|member| member.max_load).collect();
     loads.sort_by(f64::total_cmp);
     loads.dedup();
@@ -231,13 +258,11 @@ fn colour(members: &mut [Member], differing: &[Varying], by_series: bool) {
             known.push(word(member));
         }
     }
-    let in_order = match differing {
-        [] => true,
-        [only] => matches!(only.values, Values::Numbers(_)),
-        [first, other] => {
-            let coloured = if by_series { other } else { first };
-            matches!(coloured.values, Values::Numbers(_))
-        }
+    let is_number = |of: &Varying| matches!(of.values, Values::Numbers(_));
+    let in_order = match (differing, differing.get(1 + following..).unwrap_or_default()) {
+        ([], _) => true,
+        ([first, ..], []) => is_number(first),
+        ([first, ..], [other]) => is_number(if by_series { other } else { first }),
         _ => false,
     };
     for member in members {

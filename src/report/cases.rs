@@ -1,9 +1,9 @@
 //! Rows of the table `cases`, with the labels and scales of the report.
 
-use super::layout::prose;
+use super::layout::{Group, grouped, prose, wide};
 use super::numbers::Scale;
 use crate::model::{Choice as _, Method};
-use crate::stats::{Listed, Listing, StatsError, listing, loads};
+use crate::stats::{Listed, Listing, OfSweeps, StatsError, by_sweep, listing, loads};
 use crate::store::Frame;
 use maud::{Markup, html};
 
@@ -29,6 +29,8 @@ pub(super) struct Cases<'a> {
     loads: Vec<String>,
     words: Vec<&'a str>,
     listing: Listing,
+    /// The rows by sweep; empty for one sweep.
+    sweeps: Vec<OfSweeps>,
 }
 
 impl<'a> Cases<'a> {
@@ -36,7 +38,11 @@ impl<'a> Cases<'a> {
         let (loads, words) = (loads(frame)?, frame.text("caution")?);
         let load_symbol = loads.symbol;
         let loads = loads.all_labels();
-        Ok(Self { frame, realizations, load_symbol, loads, words, listing: listing(frame)? })
+        let mut listing = listing(frame)?;
+        let sweeps = by_sweep(frame, &listing)?;
+        let place = |row: usize| sweeps.iter().position(|of| of.rows.iter().any(|(own, _)| *own == row));
+        listing.rows.sort_by_key(|listed| place(listed.row));
+        Ok(Self { frame, realizations, load_symbol, loads, words, listing, sweeps })
     }
 
     /// The rows in the order of the tables.
@@ -83,9 +89,24 @@ impl<'a> Cases<'a> {
         Ok(self.frame.f64_or_null("probe_radius_m")?.iter().any(Option::is_some))
     }
 
-    /// The first two cells of a row.
+    /// The first two cells of a row: parameters that vary in its sweep, and load.
     pub(super) fn name(&self, listed: &Listed) -> Markup {
-        html! { td { (listed.label) } td { (self.load(listed.row)) } }
+        let mut rows = self.sweeps.iter().flat_map(|of| &of.rows);
+        let within = rows.find(|(row, _)| *row == listed.row).map(|(_, label)| label);
+        html! { td { (within.unwrap_or(&listed.label)) } td { (self.load(listed.row)) } }
+    }
+
+    /// A wide table with a row for each row of the table `cases`, under the headings of their sweeps.
+    pub(super) fn wide(&self, name: &str, head: &Markup, rows: Vec<(usize, Markup)>) -> Markup {
+        if self.sweeps.is_empty() {
+            return wide(name, head, &rows.into_iter().map(|(_, cells)| cells).collect::<Vec<_>>());
+        }
+        let group = |of: &OfSweeps| {
+            let own = |row: usize| of.rows.iter().any(|(known, _)| *known == row);
+            let rows = rows.iter().filter(|(row, _)| own(*row)).map(|(_, cells)| cells.clone());
+            Group { heading: of.heading.clone(), rows: rows.collect() }
+        };
+        grouped(name, head, &self.sweeps.iter().map(group).collect::<Vec<_>>())
     }
 
     pub(super) fn load(&self, row: usize) -> &str {

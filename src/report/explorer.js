@@ -5,7 +5,7 @@
   if (!source || !host) return;
   const { cycles, names, colours, statuses, letters } = JSON.parse(source.textContent);
   const SIDE = 400;
-  const COLOURS = { push: "#0072b2", pull: "#d55e00", unknown: "#777777", in: "#009e73", out: "#cc79a7", other: "#e69f00" };
+  const COLOURS = { path: "#7b3294", push: "#0072b2", pull: "#c0281c", unknown: "#777777", in: "#009e73", out: "#cc79a7", other: "#e69f00" };
   const state = { cycle: 0, loop: 0, k: 0, avalanche: -1, smallest: 2, layer: "pressure", absorbed: true, timer: 0, hidden: new Set() };
 
 
@@ -132,7 +132,7 @@
   const grey = (level) => Array(3).fill(150 + Math.round((105 * level) / 63));
   const mix = (from, to, share) => from.map((part, n) => Math.round(part + share * (to[n] - part)));
   const pressure = (level) =>
-    level > 32 ? mix([225, 235, 245], [0, 60, 110], (level - 32) / 31) : level < 32 ? mix([252, 232, 215], [190, 70, 0], (32 - level) / 32) : [255, 255, 255];
+    level > 32 ? mix([225, 235, 245], [0, 60, 110], (level - 32) / 31) : level < 32 ? mix([252, 232, 215], [160, 20, 15], (32 - level) / 32) : [255, 255, 255];
 
   // Zoom by the view box: buttons, drag, wheel with Ctrl.
   const zoomable = (drawing, side) => {
@@ -267,13 +267,13 @@
     const [grey, ring] = [partnerLoop() ? "; grey: the other method on this surface" : "", elementsLoop() ? ". Ring: stored map of boundary elements" : ""];
     chartNote.textContent = `Loop: loading dashed, unloading solid${grey}${ring}. A click moves to the nearest step.`;
     for (const of of loops.slice().reverse()) {
-      const colour = of === loop() ? COLOURS.push : "#999999";
+      const colour = of === loop() ? COLOURS.path : "#999999";
       chart.append(svg("path", { d: path(of, 0, of.up), fill: "none", stroke: colour, "stroke-width": 2, "stroke-dasharray": "7 4" }));
       chart.append(svg("path", { d: path(of, of.up - 1, of.f.length), fill: "none", stroke: colour, "stroke-width": 2 }));
     }
     chart.append(svg("text", { id: "explorer-tip", x: frame.left + 8, y: frame.top + 18, "font-size": 13 }));
     chart.append(svg("circle", { id: "explorer-map-dot", r: 0, fill: "none", stroke: "black", "stroke-width": 2 }));
-    chart.append(svg("circle", { id: "explorer-dot", r: 6, fill: COLOURS.pull, stroke: "white" }));
+    chart.append(svg("circle", { id: "explorer-dot", r: 6, fill: COLOURS.path, stroke: "white" }));
   };
   const nearest = (event) => {
     const place = chart.getBoundingClientRect();
@@ -353,7 +353,7 @@
     const dot = document.getElementById("explorer-map-dot");
     for (const [name, value] of [["cx", axes.x(other.d[best.k])], ["cy", axes.y(other.f[best.k])], ["r", 6]]) dot.setAttribute(name, value);
     rich(fieldNote, `Boundary elements, ${best.k < other.up ? "loading" : "unloading"}: nearest stored map, Δ/h_rms = ${number(other.d[best.k])}, F/(E*A₀) = ${number(other.f[best.k])}. ` +
-      (state.layer === "gap" ? `Gap from 0 (dark) to ${length(best.gap_m)} (light).` : `Pressure from ${pascal(best.low_pa)} (orange) to ${pascal(best.high_pa)} (blue).`));
+      (state.layer === "gap" ? `Gap from 0 (dark) to ${length(best.gap_m)} (light).` : `Pressure from ${pascal(best.low_pa)} (red) to ${pascal(best.high_pa)} (blue).`));
   };
   const draw = () => {
     const of = loop();

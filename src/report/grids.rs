@@ -44,8 +44,10 @@ pub(super) fn section(
     numbers: &Numbers<'_>,
 ) -> Result<Option<Markup>, StatsError> {
     let help = grid_help(cases.frame, &(0..cases.frame.row_count()).collect::<Vec<_>>())?;
-    let rows: Vec<Markup> =
-        cases.rows().iter().map(|listed| row(of, cases, listed)).collect::<Result<Vec<_>, _>>()?.concat();
+    let mut rows = Vec::new();
+    for listed in cases.rows() {
+        rows.extend(row(of, cases, listed)?.map(|cells| (listed.row, cells)));
+    }
     if rows.is_empty() && help.is_none() && of.failures.is_empty() {
         return Ok(None);
     }
@@ -59,7 +61,7 @@ pub(super) fn section(
         (heading("Grid error"))
         @if !rows.is_empty() {
             p { (prose(NOTE)) } "\n"
-            (wide("grid-error", &head, &rows))
+            (cases.wide("grid-error", &head, rows))
             @if !of.panels.is_empty() { (grid(numbers, &of.panels)) }
         }
         (failures(&of.failures))
@@ -83,20 +85,20 @@ fn failures(failures: &[Failure]) -> Markup {
     }
 }
 
-/// Row of a case with coarser grids, as a list of one or none.
-fn row(of: &Grids, cases: &Cases<'_>, listed: &Listed) -> Result<Vec<Markup>, StatsError> {
+/// Row of a case with coarser grids.
+fn row(of: &Grids, cases: &Cases<'_>, listed: &Listed) -> Result<Option<Markup>, StatsError> {
     let id = cases.frame.text("case_id")?[listed.row];
     let load = cases.frame.f64("max_load")?[listed.row];
     let (ids, loads) = (of.table.text("case_id")?, of.table.f64("max_load")?);
     let rows: Vec<usize> = (0..ids.len()).filter(|row| ids[*row] == id && loads[*row] == load).collect();
-    let Some(last) = rows.last() else { return Ok(Vec::new()) };
+    let Some(last) = rows.last() else { return Ok(None) };
     let points = of.table.f64("elements_per_wavelength")?;
     let scale = cases.scale("loss")?;
     let errors = ERRORS
         .iter()
         .map(|(_, column)| cases.number(column, listed.row))
         .collect::<Result<Vec<_>, StatsError>>()?;
-    Ok(vec![html! {
+    Ok(Some(html! {
         (cases.name(listed))
         td { @for (place, row) in rows.iter().enumerate() {
             @if place > 0 { ", " } (shown(Some(points[*row]), Shown::Plain))
@@ -110,5 +112,5 @@ fn row(of: &Grids, cases: &Cases<'_>, listed: &Listed) -> Result<Vec<Markup>, St
             } }
         }
         td { (scaled(of.table.f64_or_null("loss_extrapolated")?[*last], scale)) }
-    }])
+    }))
 }

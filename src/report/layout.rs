@@ -89,11 +89,34 @@ impl<'a> Numbers<'a> {
     }
 }
 
+/// Rows of a wide table under a heading.
+pub(super) struct Group {
+    pub(super) heading: String,
+    /// Cells of each row.
+    pub(super) rows: Vec<Markup>,
+}
+
 /// A wide table: cells of the head, and the cells of each row.
 pub(super) fn wide(name: &str, head: &Markup, rows: &[Markup]) -> Markup {
+    grouped(name, head, &[Group { heading: String::new(), rows: rows.to_vec() }])
+}
+
+/// A wide table with headings between its rows. Groups without rows are left out.
+pub(super) fn grouped(name: &str, head: &Markup, groups: &[Group]) -> Markup {
     html! {
         div.wide role="region" aria-label={ "Table " (name) } tabindex="0" data-name=(name) {
-            table { "\n" thead { tr { (head) } } "\n" tbody { "\n" @for row in rows { tr { (row) } "\n" } } }
+            table {
+                "\n" thead { tr { (head) } } "\n"
+                @for group in groups.iter().filter(|group| !group.rows.is_empty()) {
+                    tbody data-heading=[Some(&group.heading).filter(|heading| !heading.is_empty())] {
+                        "\n"
+                        @if !group.heading.is_empty() {
+                            tr.group { th colspan="99" scope="rowgroup" { (group.heading) } } "\n"
+                        }
+                        @for row in &group.rows { tr { (row) } "\n" }
+                    }
+                }
+            }
         }
         "\n"
     }

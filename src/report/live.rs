@@ -187,7 +187,7 @@ fn drawn(of: &LiveLoop) -> Markup {
                     path d={ "M0 " (format!("{zero:.1}")) "H" (SIZE.0) } stroke="#999999" {}
                 }
                 @for (k, points) in of.paths.iter().enumerate() {
-                    path d=(path(points)) fill="none" stroke="#0072b2" stroke-width="1.5"
+                    path d=(path(points)) fill="none" stroke="#7b3294" stroke-width="1.5"
                         stroke-dasharray=(if k == 0 { "5 3" } else { "none" }) {}
                 }
             }

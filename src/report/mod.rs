@@ -83,7 +83,7 @@ pub struct Report<'a> {
     pub grids: Option<&'a Grids>,
     /// Works of adhesion over the cut-off wavelength.
     pub works: Option<&'a Works>,
-    /// Names of the sweeps, in order.
+    /// Names of the sweeps with figures, in order; those of common figures are joined by `+`.
     pub sweeps: &'a [String],
     /// Panels, each with the name of its sweep.
     pub drawings: &'a [(String, Panel)],
@@ -199,7 +199,11 @@ fn figures(report: &Report<'_>, sweep: &str, numbers: &Numbers<'_>) -> Markup {
         report.drawings.iter().filter(|(of, _)| of == sweep).map(|(_, panel)| panel).collect();
     html! {
         // A run without sweeps has the cases of its base.
-        (heading(&if matches!(sweep, "" | "base") { "Figures".to_owned() } else { format!("Sweep {sweep}") }))
+        (heading(&match sweep {
+            "" | "base" => "Figures".to_owned(),
+            joined if joined.contains('+') => format!("Sweeps {}", joined.replace('+', ", ")),
+            one => format!("Sweep {one}"),
+        }))
         @if panels.is_empty() {
             p { "No cycle of this sweep has finished." } "\n"
         } @else {

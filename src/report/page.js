@@ -27,7 +27,8 @@
   const cell = (text) => (/[",\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text);
   for (const table of all(document, ".wide table")) {
     const heads = all(table, "thead th");
-    const body = table.tBodies[0];
+    const bodies = Array.from(table.tBodies);
+    const rows = (body) => Array.from(body.rows).filter((row) => !row.classList.contains("group"));
     heads.forEach((head, column) => {
       const button = make("button", "", { type: "button", title: "Sort by this column" });
       button.append(...head.childNodes);
@@ -36,15 +37,18 @@
         const up = head.getAttribute("aria-sort") !== "ascending";
         heads.forEach((other) => other.removeAttribute("aria-sort"));
         head.setAttribute("aria-sort", up ? "ascending" : "descending");
-        body.append(...Array.from(body.rows).sort(order(column, up ? 1 : -1)));
+        for (const body of bodies) body.append(...rows(body).sort(order(column, up ? 1 : -1)));
       });
     });
     const tools = make("p", "", { class: "tools" });
     const csv = make("button", "Download CSV", { type: "button" });
     csv.addEventListener("click", () => {
-      const lines = [heads, ...Array.from(body.rows).map((row) => Array.from(row.cells))];
+      const texts = (cells) => Array.from(cells, (of) => of.textContent.trim());
+      const groups = bodies.some((body) => body.dataset.heading);
+      const lines = [[...(groups ? ["sweep"] : []), ...texts(heads)]];
+      for (const body of bodies) for (const row of rows(body)) lines.push([...(groups ? [body.dataset.heading] : []), ...texts(row.cells)]);
       const heading = table.closest(".wide").dataset.name;
-      save(heading + ".csv", lines.map((line) => line.map((of) => cell(of.textContent.trim())).join(",")).join("\n") + "\n");
+      save(heading + ".csv", lines.map((line) => line.map(cell).join(",")).join("\n") + "\n");
     });
     tools.append(csv);
     table.closest(".wide").after(tools);

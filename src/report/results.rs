@@ -1,7 +1,7 @@
 //! Part of the report: results with confidence intervals, and differences from the reference case.
 
 use super::cases::Cases;
-use super::layout::{heading, prose, wide};
+use super::layout::{heading, prose};
 use super::numbers::{Scale, Shown, scaled, shown};
 use crate::stats::{Difference, FEW, Listed, StatsError, difference_of, fewer_surfaces, singles};
 use maud::{Markup, html};
@@ -94,9 +94,9 @@ fn table(cases: &Cases<'_>, name: &str, quantities: &[Quantity]) -> Result<Marku
             th { (prose(heading)) (scale.head()) }
         }
     };
-    let row = |listed| row(cases, listed, quantities, &scales);
-    let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
-    Ok(wide(name, &head, &rows))
+    let row = |listed: &Listed| Ok((listed.row, row(cases, listed, quantities, &scales)?));
+    let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, StatsError>>()?;
+    Ok(cases.wide(name, &head, rows))
 }
 
 fn note(reference: Option<&str>) -> Markup {
@@ -195,7 +195,7 @@ pub(super) fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                 column,
             )?));
         }
-        rows.push(html! { (cases.name(listed)) @for cell in cells { (cell) } });
+        rows.push((listed.row, html! { (cases.name(listed)) @for cell in cells { (cell) } }));
     }
     if rows.is_empty() {
         return Ok(Markup::default());
@@ -203,7 +203,7 @@ pub(super) fn changes(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     let head = html! { (cases.name_heads()) @for (heading, _) in CHANGES { th { (prose(heading)) } } };
     Ok(html! {
         (heading("Differences from the reference case")) p { (CHANGES_NOTE) } "\n"
-        (wide("differences", &head, &rows))
+        (cases.wide("differences", &head, rows))
     })
 }
 

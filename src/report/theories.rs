@@ -1,13 +1,15 @@
 //! Part of the report: comparison with analytical models.
 
 use super::cases::Cases;
-use super::layout::{heading, prose, wide};
+use super::layout::{heading, prose};
 use super::numbers::scaled;
 use crate::stats::{Listed, StatsError};
 use maud::{Markup, html};
 
 /// Heading, and column of the table `cases` without its `_mean`.
-const COLUMNS: [(&str, &str); 16] = [
+type Columns = &'static [(&'static str, &'static str)];
+
+const ENERGIES: Columns = &[
     ("Θ, this simulation", "loss"),
     ("Θ_{DK}, target spectrum", "loss_dk"),
     ("Θ_{DK}, realised spectrum", "loss_dk_realised"),
@@ -17,6 +19,9 @@ const COLUMNS: [(&str, &str); 16] = [
     ("Δγ A", "loss_dalvi"),
     ("2kU_{el}A, pinning", "loss_pinning"),
     ("Θ, JKR from adhesionless curve", "loss_jkr_curve"),
+];
+
+const AREAS: Columns = &[
     ("A/A_{0}, this simulation", "area_at_max_load"),
     ("A/A_{0}, JKR from adhesionless curve", "area_jkr_curve"),
     ("A/A_{0}, Persson, adhesionless", "area_adhesionless"),
@@ -54,25 +59,8 @@ const MODELS: [&str; 8] = [
 
 /// Dissipated energies, contact areas and adhesion parameters of analytical models.
 pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
-    let mut columns = Vec::new();
     let has_spots = cases.has_spots()?;
     let has_probe = cases.has_probe()?;
-    let is_shown =
-        |column: &str| (has_spots || column != OF_SPOTS) && (has_probe || !OF_PROBE.contains(&column));
-    for (heading, column) in COLUMNS.into_iter().filter(|(_, column)| is_shown(column)) {
-        columns.push((heading, column, cases.scale(column)?));
-    }
-    let head = html! {
-        (cases.name_heads()) @for (heading, _, scale) in &columns { th { (prose(heading)) (scale.head()) } }
-    };
-    let row = |listed: &Listed| -> Result<Markup, StatsError> {
-        let mut cells = Vec::new();
-        for (_, column, scale) in &columns {
-            cells.push(scaled(cases.number(&format!("{column}_mean"), listed.row)?, *scale));
-        }
-        Ok(html! { (cases.name(listed)) @for cell in cells { td { (cell) } } })
-    };
-    let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
         (heading("Comparison with analytical models"))
         p { (prose(NOTE)) } "\n"
@@ -85,6 +73,30 @@ pub(super) fn theories(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                 li { (prose(model)) } "\n"
             }
         } "\n"
-        (wide("models", &head, &rows))
+        (table(cases, "models", ENERGIES)?)
+        (table(cases, "models-area", AREAS)?)
     })
+}
+
+/// A table of columns that the run has.
+fn table(cases: &Cases<'_>, name: &str, columns: Columns) -> Result<Markup, StatsError> {
+    let (has_spots, has_probe) = (cases.has_spots()?, cases.has_probe()?);
+    let is_shown =
+        |column: &str| (has_spots || column != OF_SPOTS) && (has_probe || !OF_PROBE.contains(&column));
+    let mut shown = Vec::new();
+    for (heading, column) in columns.iter().filter(|(_, column)| is_shown(column)) {
+        shown.push((heading, column, cases.scale(column)?));
+    }
+    let head = html! {
+        (cases.name_heads()) @for (heading, _, scale) in &shown { th { (prose(heading)) (scale.head()) } }
+    };
+    let row = |listed: &Listed| -> Result<(usize, Markup), StatsError> {
+        let mut cells = Vec::new();
+        for (_, column, scale) in &shown {
+            cells.push(scaled(cases.number(&format!("{column}_mean"), listed.row)?, *scale));
+        }
+        Ok((listed.row, html! { (cases.name(listed)) @for cell in cells { td { (cell) } } }))
+    };
+    let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
+    Ok(cases.wide(name, &head, rows))
 }

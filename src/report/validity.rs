@@ -1,7 +1,7 @@
 //! Parts of the report: energy budget, model validity and warnings.
 
 use super::cases::Cases;
-use super::layout::{heading, plain, prose, wide};
+use super::layout::{heading, plain, prose};
 use super::numbers::{Shown, scaled, shown, with_aside};
 use crate::model::{Choice as _, Method};
 use crate::schema::EventKind;
@@ -76,12 +76,15 @@ pub(super) fn budget(cases: &Cases<'_>) -> Result<Markup, StatsError> {
         th { "unloading" }
         @for kind in &kinds { th { (kind.name()) } }
     };
-    let rows =
-        cases.rows().iter().map(|listed| budget_row(cases, listed, &kinds)).collect::<Result<Vec<_>, _>>()?;
+    let rows = cases
+        .rows()
+        .iter()
+        .map(|listed| Ok((listed.row, budget_row(cases, listed, &kinds)?)))
+        .collect::<Result<Vec<_>, StatsError>>()?;
     Ok(html! {
         (heading("Energy budget"))
         p { (prose(BUDGET_NOTE)) @if cases.has_spots()? { (ABSORPTION_NOTE) } } "\n"
-        (wide("energy", &head, &rows))
+        (cases.wide("energy", &head, rows))
     })
 }
 
@@ -135,7 +138,7 @@ pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     };
     let methods = cases.frame.text("method")?;
     let is_of_spots = |row: usize| methods[row] == Method::Asperities.word();
-    let row = |listed: &Listed| -> Result<Markup, StatsError> {
+    let row = |listed: &Listed| -> Result<(usize, Markup), StatsError> {
         let mut cells = Vec::new();
         for (_, column, aside, format) in columns() {
             if OF_SPOTS.contains(&column) && !is_of_spots(listed.row) {
@@ -150,13 +153,13 @@ pub(super) fn validity(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                 &with_aside(cases.number(column, listed.row)?, aside, format),
             ));
         }
-        Ok(html! { (cases.name(listed)) @for cell in cells { (cell) } })
+        Ok((listed.row, html! { (cases.name(listed)) @for cell in cells { (cell) } }))
     };
     let rows = cases.rows().iter().map(row).collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
         (heading("Model validity"))
         p { @if has_spots { (prose(RANGE_NOTE)) " " } (prose(VALIDITY_NOTE)) } "\n"
-        (wide("validity", &head, &rows))
+        (cases.wide("validity", &head, rows))
         (warning_table(cases)?)
     })
 }

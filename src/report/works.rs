@@ -1,7 +1,7 @@
 //! Part of the report: works of adhesion, simulated and predicted by models.
 
 use super::cases::Cases;
-use super::layout::{Numbers, grid, heading, prose, wide};
+use super::layout::{Numbers, grid, heading, prose};
 use super::numbers::{Shown, shown};
 use crate::figures::Panel;
 use crate::stats::{Listed, StatsError};
@@ -41,11 +41,15 @@ pub(super) fn section(of: &Works, cases: &Cases<'_>, numbers: &Numbers<'_>) -> R
     let head = html! {
         (cases.name_heads()) @for heading in HEADS { th { (prose(heading)) } }
     };
-    let rows = cases.rows().iter().map(|listed| row(of, cases, listed)).collect::<Result<Vec<_>, _>>()?;
+    let rows = cases
+        .rows()
+        .iter()
+        .map(|listed| Ok((listed.row, row(of, cases, listed)?)))
+        .collect::<Result<Vec<_>, StatsError>>()?;
     Ok(html! {
         (heading("Works of adhesion and the models"))
         p { (prose(NOTE)) } "\n"
-        (wide("works", &head, &rows))
+        (cases.wide("works", &head, rows))
         @if !of.panels.is_empty() { (grid(numbers, &of.panels)) }
     })
 }

@@ -16,6 +16,7 @@ mod measured;
 mod methods;
 mod parameter;
 mod parameters;
+mod pooled_events;
 mod probe_results;
 mod realizations;
 mod render;
@@ -39,6 +40,7 @@ pub use measured::{MEASURED_LOOPS, MEASURED_STEPS};
 pub use methods::METHODS;
 pub use parameter::{CaseFacts, Parameter, ParameterValue};
 pub use parameters::{PARAMETERS, parameters_by_rank};
+pub use pooled_events::POOLED_EVENTS;
 pub use realizations::REALIZATIONS;
 pub use render::{
     DIRECTORY, OWN_KEYS, SchemaFile, files, metadata_json, readme_markdown, schema_file_name, schema_json,
@@ -141,6 +143,7 @@ pub static TABLES: &[&Table] = &[
     &CASES,
     &CURVES,
     &AVALANCHES,
+    &POOLED_EVENTS,
     &CYCLES,
     &METHODS,
     &GRIDS,

@@ -8,8 +8,8 @@ pub(super) const CYCLE_CASE_ID: Column = text(
     "Identifier of the case, computed without the as_printed entries that only the analytical estimates use; \
      the table cycles lists every case of the cycle",
 );
-const BRANCH: Column = text("branch", "\"loading\" or \"unloading\"");
-const MAX_LOAD: Column = real(
+pub(super) const BRANCH: Column = text("branch", "\"loading\" or \"unloading\"");
+pub(super) const MAX_LOAD: Column = real(
     "max_load",
     "1",
     "Normal load F_max/(E* A0) at the load reversal from which this unloading starts; null for loading, \
@@ -22,13 +22,14 @@ const METHOD: Column = text(
     "Method: \"asperities\" or \"boundary_elements\"; null in tables of earlier versions (asperities)",
 )
 .or_null();
-const STEP: Column = index("step", "Number of the output step along the path of the cycle, from 0");
+pub(super) const STEP: Column =
+    index("step", "Number of the output step along the path of the cycle, from 0");
 const ASPERITY: Column = index(
     "asperity_id",
     "Number of the asperity in the table asperities; larger numbers are merged contacts, listed in the table \
      merged",
 );
-const ASPERITY_OR_REGION: Column = index(
+pub(super) const ASPERITY_OR_REGION: Column = index(
     "asperity_id",
     "Number of the asperity in the table asperities; larger numbers are merged contacts, listed in the table \
      merged; null for boundary elements",

@@ -1,6 +1,7 @@
 //! Files of the figures: formats, width on paper and font.
 
 use std::fmt;
+use std::ops::Range;
 
 use serde::Serialize;
 use toml::de::DeValue;
@@ -26,7 +27,7 @@ pub(super) const DEFAULT_FONT: &str = "DejaVu Sans";
 pub(super) const LONGEST_FONT: usize = 64;
 
 /// Keys of the table.
-const TAKES: [&str; 4] = ["format", "width_mm", "font", "loads"];
+const TAKES: [&str; 5] = ["format", "width_mm", "font", "loads", "across"];
 
 /// Loads of the panels of a sweep.
 pub(super) const LOADS: [&str; 2] = ["largest", "all"];
@@ -53,11 +54,20 @@ pub struct Figures {
     pub font: String,
     /// Loads in the panels of sweeps of other parameters, of [`LOADS`].
     pub loads: &'static str,
+    /// Groups of sweeps with figures of all of their cases.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub across: Vec<Vec<String>>,
 }
 
 impl Default for Figures {
     fn default() -> Self {
-        Self { format: FORMATS.to_vec(), width_mm: 88.0, font: DEFAULT_FONT.to_owned(), loads: LOADS[0] }
+        Self {
+            format: FORMATS.to_vec(),
+            width_mm: 88.0,
+            font: DEFAULT_FONT.to_owned(),
+            loads: LOADS[0],
+            across: Vec::new(),
+        }
     }
 }
 
@@ -88,29 +98,50 @@ impl fmt::Display for Figures {
         let formats: Vec<String> = self.format.iter().map(|format| format!("\"{format}\"")).collect();
         write!(
             f,
-            "{{ format = [{}], width_mm = {:?}, font = \"{}\", loads = \"{}\" }}",
+            "{{ format = [{}], width_mm = {:?}, font = \"{}\", loads = \"{}\"",
             formats.join(", "),
             self.width_mm,
             self.font,
             self.loads
-        )
+        )?;
+        if !self.across.is_empty() {
+            write!(f, ", across = {}", arrays(&self.across))?;
+        }
+        f.write_str(" }")
     }
 }
 
-/// The table of a spec.
-pub(super) fn figures(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Figures> {
+/// Groups of words as TOML: one array for one group, an array of arrays for several.
+pub(super) fn arrays(groups: &[Vec<impl AsRef<str>>]) -> String {
+    let quoted = |word: &str| format!("\"{word}\"");
+    let one = |group: &Vec<_>| -> String {
+        let words: Vec<String> = group.iter().map(|word: &_| quoted(AsRef::as_ref(word))).collect();
+        format!("[{}]", words.join(", "))
+    };
+    match groups {
+        [only] => one(only),
+        many => format!("[{}]", many.iter().map(one).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// Names of sweeps in `across`, and their places in the text.
+pub(super) type Across = Vec<(String, Range<usize>)>;
+
+/// The table of a spec, with the names of sweeps in it.
+pub(super) fn figures(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<(Figures, Across)> {
     let DeValue::Table(table) = value.get_ref() else {
         let help = "write { format = [\"svg\", \"pdf\"], width_mm = 88 }".to_owned();
         wrong_type("figures", "a table", value.get_ref(), &value.span(), help, faults);
         return None;
     };
-    let mut read = Figures::default();
+    let (mut read, mut names) = (Figures::default(), Across::new());
     for (name, span, written) in entries(table) {
         match name {
             "format" => read.format = formats(written, faults)?,
             "width_mm" => read.width_mm = number("figures.width_mm", &WIDTH, written, faults)?,
             "font" => read.font = font(written, faults)?,
             "loads" => read.loads = word("figures.loads", &LOADS, written, faults)?,
+            "across" => read.across = across(written, &mut names, faults)?,
             unknown => {
                 let listed = format!("keys of `figures`: {}", TAKES.join(", "));
                 let help = nearest(unknown, TAKES)
@@ -120,7 +151,49 @@ pub(super) fn figures(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Fi
             }
         }
     }
-    Some(read)
+    Some((read, names))
+}
+
+/// Groups of at least two sweeps: one array of names, or an array of such arrays.
+fn across(value: &Written<'_>, names: &mut Across, faults: &mut Faults<'_>) -> Option<Vec<Vec<String>>> {
+    const PATH: &str = "figures.across";
+    let elements = array(PATH, "names of sweeps", value, faults)?;
+    let is_nested = elements.first().is_some_and(|first| first.get_ref().is_array());
+    let groups: Vec<&Written<'_>> = if is_nested { elements.iter().collect() } else { vec![value] };
+    let mut found = Vec::new();
+    for group in groups {
+        let mut of_group: Vec<String> = Vec::new();
+        for element in array(PATH, "names of sweeps", group, faults)? {
+            let name = super::top::name(PATH, element, faults)?;
+            if of_group.contains(&name) {
+                let message = format!("`{PATH}` names the sweep \"{name}\" twice");
+                faults.add(&element.span(), message, "name each sweep once".to_owned());
+                return None;
+            }
+            names.push((name.clone(), element.span()));
+            of_group.push(name);
+        }
+        if of_group.len() < 2 {
+            let message = format!("`{PATH}` needs at least two sweeps");
+            faults.add(&group.span(), message, "each sweep has figures of its own already".to_owned());
+            return None;
+        }
+        found.push(of_group);
+    }
+    Some(found)
+}
+
+/// Adds a fault for each name in `across` that no sweep has.
+pub(super) fn check_across(across: &Across, sweeps: &[&str], faults: &mut Faults<'_>) {
+    for (name, at) in across.iter().filter(|(name, _)| !sweeps.contains(&name.as_str())) {
+        let listed = format!("sweeps of the spec: {}", sweeps.join(", "));
+        let help = match nearest(name, sweeps.iter().copied()) {
+            _ if sweeps.is_empty() => "the spec has no sweeps: remove the key".to_owned(),
+            Some(near) => format!("did you mean \"{near}\"? {listed}"),
+            None => listed,
+        };
+        faults.add(at, format!("unknown sweep \"{name}\" in `figures.across`"), help);
+    }
 }
 
 /// One format, or an array of formats.

@@ -4,13 +4,12 @@
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
-use toml::Spanned;
-
 use super::auto::Choices;
 use super::cases::Cases;
 use super::coarser::{self, Coarser, points_of};
 use super::elements::check_elements;
 use super::fault::Faults;
+use super::figures::check_across;
 use super::files::named;
 use super::keys::{KEYS, find};
 use super::number::short;
@@ -18,9 +17,10 @@ use super::probe::check_contact;
 use super::scans::{check_measured, realizations as scan_realizations};
 use super::shape::{blamed, check_spectrum};
 use super::sides::Sides;
-use super::sweep::{AxisDraft, SweepDraft};
+use super::sweep::SweepDraft;
 use super::values::Values;
 use super::walk::{Draft, Origin, written};
+use super::zip::AxisDraft;
 use crate::model::{CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource};
 
 use super::{Axis, Case, MAX_CASES, MAX_GRID, MAX_TASKS, Realizations, Spec, Sweep, Value};
@@ -68,6 +68,11 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     bound_tasks(&cases.list, realizations, at.or(read.first().map(|sweep| &sweep.span)), faults);
     choices.check(draft.auto_at.as_ref(), faults);
     sides.check(draft.sides_at.as_ref(), faults);
+    // A sweep with a fault has no name.
+    if read.len() == sweeps.len() {
+        let names: Vec<&str> = read.iter().map(|sweep| sweep.name.as_str()).collect();
+        check_across(&draft.across, &names, faults);
+    }
     let mut sweeps: Vec<Sweep> = read.into_iter().map(sweep).collect();
     let auto_methods = choices.settle(&mut base, &mut sweeps);
     // Of cases that are all chosen the places are of no use.
@@ -103,14 +108,17 @@ fn each_point(
     }
     for sweep in sweeps {
         let swept: Vec<usize> = sweep.axes.iter().map(|axis| axis.key).collect();
-        for point in points(&sweep.axes) {
+        for point in points(sweep) {
             let (mut values, mut origins) = (base.clone(), of_base.to_vec());
             for grid in swept.iter().filter(|key| coarser::LISTS.contains(&KEYS[**key].path)) {
                 coarser::clear_others(*grid, &coarser::LISTS, &mut values, &mut origins);
             }
-            for (axis, value) in sweep.axes.iter().zip(point) {
-                (KEYS[axis.key].set)(&mut values, value.get_ref());
-                origins[axis.key] = Origin::Written(value.span());
+            for (group, at) in sweep.together.iter().zip(point) {
+                for axis in group.iter().map(|place| &sweep.axes[*place]) {
+                    let value = &axis.values[at];
+                    (KEYS[axis.key].set)(&mut values, value.get_ref());
+                    origins[axis.key] = Origin::Written(value.span());
+                }
             }
             add(values, &origins, &swept, &sweep.name);
         }
@@ -122,8 +130,7 @@ fn too_many(sweeps: &[&SweepDraft], faults: &mut Faults<'_>) -> bool {
     let mut total: u128 = 0;
     let mut first_beyond: Option<&Range<usize>> = None;
     for sweep in sweeps {
-        let count =
-            sweep.axes.iter().fold(1_u128, |count, axis| count.saturating_mul(axis.values.len() as u128));
+        let count = sweep.counts().fold(1_u128, |count, values| count.saturating_mul(values as u128));
         total = total.saturating_add(count);
         if total > u128::from(MAX_CASES) {
             first_beyond = first_beyond.or(Some(&sweep.span));
@@ -165,20 +172,17 @@ fn bound_tasks(
     }
 }
 
-/// Every point of the grid of some axes, the last one running fastest; one empty point if there is no axis.
-fn points(axes: &[AxisDraft]) -> impl Iterator<Item = Vec<&Spanned<Value>>> {
-    let count: usize = axes.iter().map(|axis| axis.values.len()).product();
-    (0..count).map(|number| {
+/// Every point of the grid of a sweep: the place of the value of each group of axes. The last group runs
+/// fastest. One empty point if there is no axis.
+fn points(sweep: &SweepDraft) -> impl Iterator<Item = Vec<usize>> {
+    let counts: Vec<usize> = sweep.counts().collect();
+    (0..counts.iter().product()).map(move |number: usize| {
         let mut rest = number;
-        let mut point: Vec<_> = axes
-            .iter()
-            .rev()
-            .map(|axis| {
-                let value = &axis.values[rest % axis.values.len()];
-                rest /= axis.values.len();
-                value
-            })
-            .collect();
+        let mut point: Vec<usize> = Vec::with_capacity(counts.len());
+        for count in counts.iter().rev() {
+            point.push(rest % count);
+            rest /= count;
+        }
         point.reverse();
         point
     })
@@ -276,5 +280,11 @@ fn sweep(draft: &SweepDraft) -> Sweep {
         key: KEYS[axis.key].path,
         values: axis.values.iter().map(|value| value.get_ref().clone()).collect(),
     };
-    Sweep { name: draft.name.clone(), axes: draft.axes.iter().map(axis).collect() }
+    let path = |place: &usize| KEYS[draft.axes[*place].key].path;
+    let zip = draft.together.iter().filter(|group| group.len() > 1);
+    Sweep {
+        name: draft.name.clone(),
+        zip: zip.map(|group| group.iter().map(path).collect()).collect(),
+        axes: draft.axes.iter().map(axis).collect(),
+    }
 }

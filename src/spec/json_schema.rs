@@ -62,6 +62,7 @@ pub fn json_schema() -> String {
     let name = |meaning: &str| json!({ "type": "string", "pattern": NAME, "description": meaning });
     in_sweep.insert("name", name("Name of the sweep, unique in the spec."));
     properties.insert("name", name("Name of the run and of its default output directory."));
+    in_sweep.insert("zip", zip());
     let seed = json!({
         "type": "integer", "minimum": 0, "maximum": i64::MAX, "default": DEFAULT_SEED,
         "description": "Seed of all generated surfaces.",
@@ -76,7 +77,7 @@ pub fn json_schema() -> String {
     properties.insert(
         "sweep",
         json!({ "type": "array", "items": sweep, "description": "Each sweep overrides keys; arrays in one \
-             sweep multiply." }),
+             sweep multiply, but for those of `zip`." }),
     );
     let files = json!({ "type": "string", "pattern": DIGEST });
     properties.insert(
@@ -139,6 +140,20 @@ fn outside(of: &Key) -> Value {
 /// The value or the values of a key in a sweep.
 fn axis(of: &Key) -> Value {
     json!({ "anyOf": [key(of), { "type": "array", "items": key(of), "minItems": 1 }] })
+}
+
+/// Groups of keys that advance together.
+fn zip() -> Value {
+    let paths: Vec<&str> = KEYS.iter().map(|key| key.path).collect();
+    let group = json!({
+        "type": "array", "items": { "type": "string", "enum": paths }, "minItems": 2, "uniqueItems": true,
+    });
+    let groups = json!({ "type": "array", "items": group, "minItems": 1 });
+    json!({
+        "anyOf": [group, groups],
+        "description": "Keys of the sweep whose arrays advance together instead of multiplying; several \
+             groups as an array of arrays.",
+    })
 }
 
 fn definition(key: &Key) -> Value {
@@ -227,6 +242,9 @@ fn experiment() -> Value {
 fn figures() -> Value {
     let default = Figures::default();
     let format = json!({ "type": "string", "enum": FORMATS });
+    let group = json!({
+        "type": "array", "items": { "type": "string", "pattern": NAME }, "minItems": 2, "uniqueItems": true,
+    });
     json!({
         "type": "object",
         "additionalProperties": false,
@@ -247,6 +265,11 @@ fn figures() -> Value {
             "loads": {
                 "type": "string", "enum": LOADS, "default": default.loads,
                 "description": "Loads in the figures of sweeps of other parameters.",
+            },
+            "across": {
+                "anyOf": [group, { "type": "array", "items": group, "minItems": 1 }],
+                "description": "Sweeps with figures of all of their cases together; several groups as an \
+                     array of arrays.",
             },
         },
         "description": "Files of the figures.",

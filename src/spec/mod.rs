@@ -34,6 +34,7 @@ mod values;
 mod walk;
 mod write;
 mod written;
+mod zip;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read as _;
@@ -208,11 +209,15 @@ pub struct Case {
     pub params: CaseParams,
 }
 
-/// One `[[sweep]]`: its axes multiply, the last one runs fastest.
+/// One `[[sweep]]`: its axes multiply, the last one runs fastest. Axes of one group of `zip` advance together
+/// in the place of the first one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sweep {
     /// Name, unique in the spec.
     pub name: String,
+    /// Groups of keys that advance together.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub zip: Vec<Vec<&'static str>>,
     /// Overridden keys, in the order written.
     pub axes: Vec<Axis>,
 }

@@ -47,6 +47,9 @@ material.work_of_adhesion_j_m2 = [0.01, 0.02, 0.05]
 - A value replaces the value of the section for all cases of the sweep.
 - An array of values gives one case for each value.
 - Arrays in one sweep multiply. Several sweeps add up. Equal cases are computed once.
+- `zip = [\"surface.magnification\", \"boundary_elements.points\"]` names keys whose arrays advance
+  together: the first values make one case, the second values the next. The arrays have equally many
+  values. Several groups are an array of arrays.
 - A key that holds an array (`max_load`, `as_printed`) is swept with an array of arrays.
 ";
 
@@ -102,6 +105,7 @@ fn top() -> String {
 | `figures.width_mm` | float | {} | `88` |
 | `figures.font` | string | 1 to {LONGEST_FONT} bytes | `\"{DEFAULT_FONT}\"` |
 | `figures.loads` | string | `\"largest\"`, `\"all\"` | `\"largest\"` |
+| `figures.across` | array of strings | at least two sweeps | none |
 
 - `name`: Name of the run and of its default output directory.
 - `seed`: Seed of all generated surfaces. The same seed gives the same surfaces.
@@ -122,7 +126,9 @@ fn top() -> String {
            - `figures.width_mm`: Width in millimetres of a panel in PNG and PDF files. Labels next to a\n  \
            panel add to it.\n\
            - `figures.font`: Font family of the SVG files. PNG and PDF files have DejaVu Sans.\n\
-           - `figures.loads`: Loads in the figures of sweeps of other parameters. Tables have all loads.\n"
+           - `figures.loads`: Loads in the figures of sweeps of other parameters. Tables have all loads.\n\
+           - `figures.across`: Names of sweeps with figures of all of their cases together, such as\n  \
+           `[\"coarse\", \"fine\"]`. Several groups are an array of arrays.\n"
 }
 
 /// The table of measured loops.

@@ -9,7 +9,8 @@ use toml::de::{DeTable, DeValue};
 use super::entries::{entries, keys, lost, shown};
 use super::fault::Faults;
 use super::keys::{KEYS, TABLES};
-use super::{Value, top, value};
+use super::zip::{self, AxisDraft};
+use super::{top, value};
 
 /// A sweep whose values are read.
 pub(super) struct SweepDraft {
@@ -17,18 +18,31 @@ pub(super) struct SweepDraft {
     /// Start in the text.
     pub(super) span: Range<usize>,
     pub(super) axes: Vec<AxisDraft>,
+    /// Places of axes that advance together; each axis once.
+    pub(super) together: Vec<Vec<usize>>,
 }
 
-/// An axis whose values are read.
-pub(super) struct AxisDraft {
-    /// The key's place in [`KEYS`].
-    pub(super) key: usize,
-    pub(super) values: Vec<Spanned<Value>>,
+impl SweepDraft {
+    /// Number of values of each group of axes.
+    pub(super) fn counts(&self) -> impl Iterator<Item = usize> {
+        let count = |group: &Vec<usize>| group.first().map_or(1, |axis| self.axes[*axis].values.len());
+        self.together.iter().map(count)
+    }
 }
 
 /// Keys of a sweep.
-const IN_SWEEP: [&str; 9] =
-    ["name", "surface", "material", "model", "boundary_elements", "cycle", "probe", "machine", "substrate"];
+const IN_SWEEP: [&str; 10] = [
+    "name",
+    "zip",
+    "surface",
+    "material",
+    "model",
+    "boundary_elements",
+    "cycle",
+    "probe",
+    "machine",
+    "substrate",
+];
 
 /// Reads the sweeps.
 pub(super) fn sweeps(
@@ -68,7 +82,7 @@ fn sweep(
     faults: &mut Faults<'_>,
 ) -> Option<SweepDraft> {
     let before = faults.count();
-    let mut name = None;
+    let (mut name, mut zipped) = (None, None);
     let mut overrides = Vec::new();
     let entries = entries(found);
     if !entries.iter().any(|(key, ..)| *key == "name") {
@@ -89,6 +103,7 @@ fn sweep(
                     faults.add(&written.span(), message, "give each sweep a different name".to_owned());
                 }
             }
+            "zip" => zipped = Some(written),
             table if TABLES.contains(&table) => {
                 overrides.extend(keys(table, written, &span, faults));
             }
@@ -104,10 +119,13 @@ fn sweep(
     }
     // Keys of different tables may alternate; the grid follows the order written.
     overrides.sort_by_key(|(_, span, _)| span.start);
+    let listed: Vec<usize> = overrides.iter().map(|(place, ..)| *place).collect();
+    let groups = zipped.map_or_else(Vec::new, |written| zip::groups(written, &listed, faults));
     let axes: Vec<_> =
         overrides.into_iter().filter_map(|(place, _, written)| axis(place, written, faults)).collect();
+    let together = zip::together(&groups, &axes, faults);
     let name = name.filter(|_| faults.count() == before)?;
-    Some(SweepDraft { name, span: at, axes })
+    Some(SweepDraft { name, span: at, axes, together })
 }
 
 /// Reads one axis: an array of values, or a single one. An array is one value for a key that takes an array.

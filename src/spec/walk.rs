@@ -10,7 +10,7 @@ use super::coarser::{self, Coarser};
 use super::entries::{Entry, entries, keys, lost, shown};
 use super::experiment::experiment;
 use super::fault::Faults;
-use super::figures::{Figures, figures};
+use super::figures::{Across, Figures, figures};
 use super::files::files;
 use super::keys::{KEYS, TABLES};
 use super::realizations::{DEFAULT, Realizations, realizations};
@@ -25,6 +25,8 @@ pub(super) struct Draft {
     pub(super) seed: u64,
     pub(super) realizations: Realizations,
     pub(super) figures: Figures,
+    /// Sweeps that the figures name.
+    pub(super) across: Across,
     pub(super) experiment: Option<Experiment>,
     pub(super) base: Values,
     /// Coarser grids of boundary elements of the base.
@@ -107,6 +109,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         seed: top::DEFAULT_SEED,
         realizations: Realizations::Exactly(DEFAULT),
         figures: Figures::default(),
+        across: Across::new(),
         realizations_at: None,
         experiment: None,
         base: Values::default(),
@@ -144,7 +147,7 @@ pub(super) fn enter((key, span, written): Entry<'_, '_>, draft: &mut Draft, faul
             draft.realizations_at = Some(written.span());
             draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
         }
-        "figures" => draft.figures = figures(written, faults).unwrap_or_default(),
+        "figures" => (draft.figures, draft.across) = figures(written, faults).unwrap_or_default(),
         "experiment" => draft.experiment = experiment(written, faults),
         "auto_methods" => {
             draft.auto_at = Some(written.span());

@@ -2,6 +2,7 @@
 
 use std::fmt::{Error, Write as _};
 
+use super::figures::arrays;
 use super::keys::{
     GENERATED, KEYS, Key, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_GRIDS, OTHER_LOADS, REPLACED, TABLES,
     WHERE_USED,
@@ -52,6 +53,9 @@ fn write(spec: &Spec, text: &mut String) -> Result<(), Error> {
     }
     for sweep in &spec.sweeps {
         writeln!(text, "\n[[sweep]]\nname = \"{}\"", sweep.name)?;
+        if !sweep.zip.is_empty() {
+            writeln!(text, "zip = {}", arrays(&sweep.zip))?;
+        }
         for axis in &sweep.axes {
             match axis.values.as_slice() {
                 [only] => writeln!(text, "{} = {}", axis.key, value(only))?,

@@ -12,6 +12,7 @@ use super::surface::scale;
 use super::{StageError, Tally, cutoff, datapackage, scan_spectra};
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, STATISTICS, Stage, Standing, SurfaceUnit, Unit};
 use crate::model::Choice;
+use crate::schema;
 use crate::spec::CaseParams;
 use crate::stats::{self, CaseInput, CycleInput, Given, Planned, WithGridErrors};
 use crate::store::commit::Written;
@@ -85,9 +86,16 @@ fn write(campaign: &Campaign, standings: &[Standing], key: &str) -> Result<Vec<W
             &[("key", key.to_owned())],
         )?)
     };
+    let events = parquet::write_parts(
+        &campaign.dir.join(schema::POOLED_EVENTS.file),
+        &schema::POOLED_EVENTS,
+        stats::pooled_events(&cases, &cycles)?,
+        &[("key", key.to_owned())],
+    )?;
     let over_cut_offs = cutoff::table(campaign, standings)?;
     let tables = [realizations, curves, avalanches, planned, methods, averaged, grids, over_cut_offs];
     let mut files = tables.iter().map(write).collect::<Result<Vec<_>, StageError>>()?;
+    files.push(events);
     if let Some(loops) = measured_loops(campaign)? {
         files.push(write(&measured_loop::rows(&loops)?)?);
         files.push(write(&measured_loop::steps(&loops)?)?);

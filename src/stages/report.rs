@@ -66,7 +66,7 @@ impl Drawings {
         let all_loads = campaign.spec.figures.has_all_loads();
         let tables = Tables { cases, curves, realizations, avalanches: Some(avalanches), all_loads };
         let mut drawn = Vec::new();
-        for sweep in sweeps(campaign) {
+        for sweep in sweeps(campaign).into_iter().chain(across(campaign)) {
             for units in Units::ALL {
                 drawn.extend(panels(&tables, &sweep, units)?.into_iter().map(|panel| (sweep.clone(), panel)));
             }
@@ -200,7 +200,7 @@ fn page(
         scan_spectra: drawings.scan_spectra.as_ref(),
         works: drawings.works.as_ref(),
         grids: drawings.grids.as_ref(),
-        sweeps: &sweeps(campaign),
+        sweeps: &sweeps(campaign).into_iter().chain(across(campaign)).collect::<Vec<_>>(),
         drawings: &drawings.panels,
         cycles: &drawings.cycles,
         explorer: explorer(campaign, standings, &statistics.cases, &statistics.methods)?.as_deref(),
@@ -269,6 +269,12 @@ pub(super) fn pictures(stem: &str, svg: &str, files: &Figures) -> Result<Vec<(St
     files.written().into_iter().map(one).collect()
 }
 
+/// Groups of sweeps with common figures, the names joined by `+`.
+fn across(campaign: &Campaign) -> impl Iterator<Item = String> {
+    campaign.spec.figures.across.iter().map(|group| group.join("+"))
+}
+
+/// Names of the sweeps, in their order.
 fn sweeps(campaign: &Campaign) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for name in campaign.shown_cases().flat_map(|unit| &unit.case.sweeps) {

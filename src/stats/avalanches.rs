@@ -14,13 +14,8 @@ use crate::store::Frame;
 /// # Errors
 /// If a table of events cannot be read or holds what no cycle can hold, or if a cycle names an unknown case.
 pub fn avalanches(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame, StatsError> {
-    let mut ordered: Vec<(&CaseInput, &CycleInput)> = Vec::new();
-    for input in cycles {
-        ordered.push((case_of(cases, input)?, input));
-    }
-    ordered.sort_by(|a, b| a.0.case_id.cmp(&b.0.case_id).then(a.1.realization.cmp(&b.1.realization)));
     let mut rows: Vec<Avalanche> = Vec::new();
-    for (case, input) in ordered {
+    for (case, input) in ordered(cases, cycles)? {
         let events = Events::read(&input.events)?;
         rows.extend(events.avalanches().filter_map(|of_one| Avalanche::of(case, input, of_one)));
     }
@@ -43,6 +38,19 @@ pub fn avalanches(cases: &[CaseInput], cycles: &[CycleInput]) -> Result<Frame, S
         .f64("load_drop_n", each(|row| row.first.load_before_n - row.last.load_after_n))
         .f64("area_change_m2", each(|row| row.last.area_after_m2 - row.first.area_before_m2));
     Ok(frame.counts(rows.iter().map(|row| row.counts)).build()?)
+}
+
+/// Cycles with their cases, ordered by case and realization.
+pub(super) fn ordered<'a>(
+    cases: &'a [CaseInput],
+    cycles: &'a [CycleInput],
+) -> Result<Vec<(&'a CaseInput, &'a CycleInput)>, StatsError> {
+    let mut ordered: Vec<(&CaseInput, &CycleInput)> = Vec::new();
+    for input in cycles {
+        ordered.push((case_of(cases, input)?, input));
+    }
+    ordered.sort_by(|a, b| a.0.case_id.cmp(&b.0.case_id).then(a.1.realization.cmp(&b.1.realization)));
+    Ok(ordered)
 }
 
 /// The events of one avalanche, summed up.

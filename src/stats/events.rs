@@ -16,6 +16,8 @@ pub(super) struct Event {
     pub(super) max_load: Option<f64>,
     pub(super) kind: EventKind,
     pub(super) cause: EventKind,
+    /// Nothing for boundary elements.
+    pub(super) asperity_id: Option<i64>,
     pub(super) approach_m: f64,
     pub(super) avalanche_id: i64,
     pub(super) load_before_n: f64,
@@ -50,6 +52,11 @@ impl Events {
     /// The avalanches, in the order of the path; none is empty.
     pub(super) fn avalanches(&self) -> impl Iterator<Item = &[Event]> {
         self.0.chunk_by(|a, b| a.avalanche_id == b.avalanche_id)
+    }
+
+    /// All events, in the order of the path.
+    pub(super) fn all(&self) -> &[Event] {
+        &self.0
     }
 
     /// Events of the loop of a load reversal, whose step is given.
@@ -88,6 +95,7 @@ fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
         event_kind(word)
             .ok_or_else(|| format!("hold the kind {word:?}; there are: {}", EVENT_KINDS.join(", ")))
     };
+    let asperities = frame.i64_or_null("asperity_id")?;
     let (approaches, energies) = (frame.f64("approach_m")?, frame.f64("energy_lost_j")?);
     let (loads_before, loads_after) = (frame.f64("load_before_n")?, frame.f64("load_after_n")?);
     let (areas_before, areas_after) = (frame.f64("area_before_m2")?, frame.f64("area_after_m2")?);
@@ -108,6 +116,7 @@ fn rows(frame: &Frame) -> Result<Vec<Result<Event, String>>, FrameError> {
             max_load,
             kind: known(kinds[row])?,
             cause: known(causes[row])?,
+            asperity_id: asperities[row],
             approach_m: approaches[row],
             avalanche_id: avalanches[row],
             load_before_n: loads_before[row],

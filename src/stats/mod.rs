@@ -6,6 +6,7 @@
 
 mod adhesion;
 mod avalanches;
+mod by_sweep;
 mod cases;
 mod cautions;
 mod compare;
@@ -23,6 +24,7 @@ mod methods;
 mod model_error;
 mod models;
 mod planned;
+mod pooled_events;
 mod realizations;
 mod rows;
 mod student;
@@ -35,6 +37,7 @@ mod warnings;
 use std::path::PathBuf;
 
 pub use avalanches::avalanches;
+pub use by_sweep::{OfSweeps, by_sweep};
 pub use cases::{cases, fewer_surfaces};
 pub use cautions::{CAUTIONS, Caution, LIMITS, LONGEST_STEP, Limit, MANY_STEPS, MOST_LEFT_OUT, condition};
 pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, matched, singles, together};
@@ -47,6 +50,7 @@ pub use listed::{Listed, Listing, listing, listing_of, sweeps};
 pub use loads::{load_in_words, loads};
 pub use methods::{MethodPair, method_pairs, methods, methods_summary, names_of_pairs};
 pub use planned::{Planned, planned};
+pub use pooled_events::pooled_events;
 pub use realizations::{realizations, results};
 pub use rows::Value;
 pub use student::{FEW, Sample, t_quantile};

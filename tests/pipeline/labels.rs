@@ -1,6 +1,6 @@
 //! Numbers and names in tables that people read.
 
-use hysteron::stats::{CaseInput, Shown, cases, column_exponent, labels, realizations, significant, summary};
+use hysteron::stats::{CaseInput, Shown, by_sweep, cases, column_exponent, labels, listing, realizations, significant, summary};
 use hysteron::store::Frame;
 use hysteron::text::counted;
 
@@ -105,6 +105,25 @@ fn law_rows_and_sweeps_have_the_order_of_the_spec() {
     let text = summary(&frame, None, Shown::All).unwrap();
     let places: Vec<_> = ["\nrough ", "ζ=64", "ζ=512", "ζ=128", "\nhurst "].iter().map(|label| text.find(label).unwrap()).collect();
     assert!(places.is_sorted(), "{text}");
+}
+
+#[test]
+fn law_headings_of_sweeps_have_what_is_constant_in_them() {
+    let with = |id: &str, sweep: &str, zeta: f64, hurst: f64| CaseInput { planned_count: 2, ..case(id, sweep, hurst, zeta, &[0.0071]) };
+    let grouped = |inputs: &[CaseInput]| -> Vec<(String, Vec<String>)> {
+        let frame = table(inputs, 2);
+        let found = by_sweep(&frame, &listing(&frame).unwrap()).unwrap();
+        found.into_iter().map(|of| (of.heading, of.rows.into_iter().map(|(_, label)| label).collect())).collect()
+    };
+    let two = |heading: &str, labels: [&str; 2]| (heading.to_owned(), labels.map(str::to_owned).to_vec());
+    let inputs =
+        [with("a", "smooth", 64.0, 0.9), with("b", "smooth", 128.0, 0.9), with("c", "rough", 64.0, 0.7), with("d", "rough", 128.0, 0.7)];
+    assert_eq!(grouped(&inputs), [two("Sweep smooth: H = 0.9", ["ζ = 64", "ζ = 128"]), two("Sweep rough: H = 0.7", ["ζ = 64", "ζ = 128"])]);
+    // With a reference case: what differs from it.
+    let inputs = [with("a", "zeta+hurst", 64.0, 0.8), with("b", "zeta", 128.0, 0.8), with("c", "hurst", 64.0, 0.7)];
+    let one = |heading: &str, label: &str| (heading.to_owned(), vec![label.to_owned()]);
+    assert_eq!(grouped(&inputs), [one("Sweeps zeta, hurst", "reference"), one("Sweep zeta", "ζ = 128"), one("Sweep hurst", "H = 0.7")]);
+    assert!(grouped(&inputs[..1]).len() == 1 && grouped(&[with("a", "one", 64.0, 0.8)]).is_empty());
 }
 
 #[test]

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use hysteron::schema::{AVALANCHES, EVENT_KINDS};
-use hysteron::stats::{StatsError, avalanches, cases, realizations};
+use hysteron::schema::{AVALANCHES, EVENT_KINDS, POOLED_EVENTS};
+use hysteron::stats::{StatsError, avalanches, cases, pooled_events, realizations};
 use hysteron::store::Frame;
-use hysteron::store::parquet::{read_table, write_table};
+use hysteron::store::parquet::{read_table, write_parts, write_table};
 
 use crate::steps::{Bench, ENERGY_J, Event, Step, case, cycle, events_path, write, write_events};
 
@@ -110,6 +110,35 @@ fn law_avalanches_hold_every_event_once_in_any_order_of_the_inputs() {
     let path = bench.directory.path().join("avalanches.parquet");
     write_table(&path, &before, &[]).unwrap();
     assert_eq!(read_table(&path, &AVALANCHES).unwrap(), before);
+}
+
+#[test]
+fn law_the_pooled_events_are_those_of_the_avalanches() {
+    let mut bench = bench(&[1.0, 0.5, 2.0]);
+    let (path, keys) = (bench.directory.path().join("pooled.parquet"), []);
+    let written = |bench: &Bench| {
+        write_parts(&path, &POOLED_EVENTS, pooled_events(&bench.cases, &bench.cycles).unwrap(), &keys).unwrap();
+        read_table(&path, &POOLED_EVENTS).unwrap()
+    };
+    let events = written(&bench);
+    assert_eq!(events.row_count(), 33);
+    // Sizes of the avalanches, from the events.
+    let avalanches = avalanches(&bench.cases, &bench.cycles).unwrap();
+    let key = |frame: &Frame, row: usize| (frame.text("cycle_id").unwrap()[row].to_owned(), frame.i64("avalanche_id").unwrap()[row]);
+    for at in 0..avalanches.row_count() {
+        let rows: Vec<usize> = (0..events.row_count()).filter(|row| key(&events, *row) == key(&avalanches, at)).collect();
+        assert_eq!(rows.len() as i64, avalanches.i64("event_count").unwrap()[at]);
+        for name in ["energy_lost_j", "energy_lost"] {
+            let sum: f64 = rows.iter().map(|row| events.f64(name).unwrap()[*row]).sum();
+            close(sum, avalanches.f64(name).unwrap()[at]);
+        }
+        assert!(rows.iter().all(|row| events.text("branch").unwrap()[*row] == avalanches.text("branch").unwrap()[at]));
+    }
+    // In any order of the inputs, the same bytes.
+    let bytes = std::fs::read(&path).unwrap();
+    bench.cycles.rotate_left(1);
+    assert_eq!(written(&bench), events);
+    assert_eq!(std::fs::read(&path).unwrap(), bytes);
 }
 
 #[test]

@@ -144,7 +144,7 @@ fn law_labels_of_a_sweep_have_no_float_noise() {
         assert!(of.contains(&label), "{label} is not in {of:?}");
     }
     assert!(
-        drawn[0].caption.contains("for Δγ = 0.01 J/m², 0.055 J/m², 0.1 J/m²; ε = 0.5 nm, 1 nm, 3 nm; mean of 2 surfaces"),
+        drawn[0].caption.contains("for Δγ = 0.01 J/m², 0.055 J/m², 0.1 J/m² with ε = 0.5 nm, 1 nm, 3 nm; mean of 2 surfaces"),
         "{}",
         drawn[0].caption
     );
@@ -162,4 +162,41 @@ fn law_counts_of_surfaces_are_sentences() {
     assert!(captions([0, 6]).contains("; mean of up to 6 surfaces"));
     assert!(captions([1, 1]).contains("; one surface"));
     assert!(captions([1, 3]).contains("; mean of 1 to 3 surfaces"));
+}
+
+#[test]
+fn law_parameters_that_advance_together_are_one_axis() {
+    let of = (0.13, 5e-4, 5e-4, 2.5);
+    let inputs: Vec<_> = [(0.6, 64.0), (0.7, 128.0), (0.8, 256.0)]
+        .into_iter()
+        .map(|(hurst, zeta)| (case(&format!("z{zeta}"), "zip", hurst, zeta, &[0.0071]), of))
+        .collect();
+    let drawn = panels_of(&tables(&inputs, 2), "zip").unwrap();
+    let line = named(&drawn[1], "pull_off_load");
+    assert_eq!((line.len(), line[0].points.len()), (1, 3), "one line joins the three cases");
+    assert!(drawn[1].caption.contains(", for ζ = 64, 128, 256 with H = 0.6, 0.7, 0.8;"), "{}", drawn[1].caption);
+}
+
+#[test]
+fn law_several_sweeps_have_common_panels() {
+    let of = (0.13, 5e-4, 5e-4, 2.5);
+    let with = |sweep: &str, hurst: f64, zeta: f64| (case(&format!("{sweep}{zeta}"), sweep, hurst, zeta, &[0.0071]), of);
+    let made = tables(&[with("a", 0.8, 64.0), with("a", 0.8, 128.0), with("b", 0.7, 128.0), with("b", 0.7, 256.0)], 2);
+    let drawn = panels_of(&made, "a+b").unwrap();
+    let lines = named(drawn.iter().find(|panel| panel.name == "B").unwrap(), "pull_off_load");
+    let places: Vec<Vec<f64>> = lines.iter().map(|line| line.points.iter().map(|point| point.0).collect()).collect();
+    assert_eq!(places, [vec![128.0, 256.0], vec![64.0, 128.0]]);
+    assert!(drawn.iter().all(|panel| panel.stem.starts_with("a-b_") && panel.caption.contains(" Sweeps a, b.")));
+    assert!(panels_of(&made, "a+c").unwrap_err().to_string().contains("\"c\""));
+}
+
+#[test]
+fn law_a_caption_counts_the_cases_without_a_result() {
+    let of = (0.13, 5e-4, 5e-4, 2.5);
+    let (cases, curves, realizations) =
+        tables(&[0.6, 0.7, 0.8].map(|hurst| (case(&format!("h{hurst}"), "h", hurst, 64.0, &[0.0071]), of)), 2);
+    let without = replaced(&replaced(&cases, "done_count", 0, 0.0), "failed_count", 0, 2.0);
+    let drawn = panels_of(&(without, curves, realizations), "h").unwrap();
+    assert!(drawn.iter().all(|panel| panel.caption.contains(" 1 of 3 cases failed: not drawn.")), "{}", drawn[0].caption);
+    assert_eq!(drawn[0].cases.len(), 2);
 }

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use hysteron::schema::{
-    ASPERITIES, AVALANCHES, CASES, CYCLES, Column, DIRECTORY, EVENT_KINDS, Kind, REALIZATIONS, TABLES, Table, files, metadata_json,
-    readme_markdown, schema_json,
+    ASPERITIES, AVALANCHES, CASES, CYCLES, Column, DIRECTORY, EVENT_KINDS, Kind, POOLED_EVENTS, REALIZATIONS, TABLES, Table, files,
+    metadata_json, readme_markdown, schema_json,
 };
 use hysteron::spec::{SCHEMA_FILE, json_schema};
 
@@ -82,7 +82,7 @@ fn law_every_table_names_what_its_rows_belong_to() {
     for table in TABLES.iter().filter(|table| table.file.starts_with("cycles/")) {
         has(table, &["cycle_id", "case_id", "realization"]);
     }
-    for table in [&REALIZATIONS, &AVALANCHES, &CYCLES] {
+    for table in [&REALIZATIONS, &AVALANCHES, &POOLED_EVENTS, &CYCLES] {
         has(table, &["cycle_id", "case_id", "realization", "surface_id", "asperities_id"]);
     }
     has(&ASPERITIES, &["surface_id", "realization", "asperity_id"]);

@@ -78,7 +78,7 @@ def identities(folder):
                 compared += 1
         asperities = rows(folder / f"asperities/{cycle['asperities_id']}.parquet")
         assert {(row["surface_id"], row["realization"]) for row in asperities} == {(cycle["surface_id"], cycle["realization"])}
-    for table in ["realizations", "avalanches"]:
+    for table in ["realizations", "avalanches", "events"]:
         for row in rows(folder / f"statistics/{table}.parquet"):
             cycle = cycles[row["cycle_id"]]
             assert all(row[name] == cycle[name] for name in ["case_id", "realization", "surface_id", "asperities_id"])

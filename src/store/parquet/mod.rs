@@ -3,6 +3,7 @@
 mod read;
 mod write;
 
+use std::cell::Cell;
 use std::path::Path;
 
 use arrow_schema::DataType;
@@ -10,7 +11,7 @@ use arrow_schema::DataType;
 use crate::schema::{Kind, Table};
 
 use super::commit::{Written, commit};
-use super::error::StoreError;
+use super::error::{Cause, StoreError};
 use super::frame::Frame;
 
 /// The file-level key under which a table carries its own schema, since Polars, pandas and DuckDB drop that
@@ -33,6 +34,36 @@ pub fn write_table(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Resul
             } else {
                 Err("the content read back differs from the content written".into())
             }
+        },
+    )
+}
+
+/// Writes a table of which one part at a time is in memory in place of `path`. `keys` as of [`write_table`].
+///
+/// # Errors
+/// If a part cannot be made or the file cannot be written whole; what was at `path` is then still there.
+pub fn write_parts<E: Into<Cause>>(
+    path: &Path,
+    table: &'static Table,
+    parts: impl IntoIterator<Item = Result<Frame, E>>,
+    keys: &[(&str, String)],
+) -> Result<Written, StoreError> {
+    let written = Cell::new(0);
+    commit(
+        &format!("write the table {} to", table.name),
+        path,
+        |temporary| {
+            written.set(write::parts(
+                temporary,
+                table,
+                parts.into_iter().map(|part| part.map_err(Into::into)),
+                keys,
+            )?);
+            Ok(())
+        },
+        |temporary| match read::row_count(temporary, table)? {
+            found if found == written.get() => Ok(()),
+            found => Err(format!("{found} rows read back instead of {} written", written.get()).into()),
         },
     )
 }

@@ -67,21 +67,60 @@ fn writer_properties(table: &Table, own: String) -> Result<WriterProperties, Cau
     Ok(properties.build())
 }
 
+/// A table that is being written.
+struct Writer {
+    schema: Arc<Schema>,
+    writer: ArrowWriter<File>,
+}
+
+impl Writer {
+    /// Begins the file at `path`, which is there already.
+    fn begin(path: &Path, table: &Table, keys: &[(&str, String)]) -> Result<Self, Cause> {
+        let own = own_json(table, keys)?;
+        let schema = arrow_schema(table, &own);
+        let properties = writer_properties(table, own)?;
+        let file = File::options().write(true).open(path)?;
+        let writer = ArrowWriter::try_new(file, Arc::clone(&schema), Some(properties))?;
+        Ok(Self { schema, writer })
+    }
+
+    /// Adds the rows of a frame.
+    fn add(&mut self, frame: &Frame) -> Result<(), Cause> {
+        // Batch by batch: a column of repeated identities is large in memory, though not in the file.
+        for first in (0..frame.row_count().max(1)).step_by(ROW_GROUP) {
+            let rows = first..frame.row_count().min(first + ROW_GROUP);
+            let arrays = frame.columns().map(|(_, data)| array(data, rows.clone())).collect();
+            self.writer.write(&RecordBatch::try_new(Arc::clone(&self.schema), arrays)?)?;
+        }
+        Ok(())
+    }
+}
+
 /// Writes a frame into the file at `path`, which is there already.
 pub(super) fn rows(path: &Path, frame: &Frame, keys: &[(&str, String)]) -> Result<(), Cause> {
-    let own = own_json(frame.table(), keys)?;
-    let schema = arrow_schema(frame.table(), &own);
-    let properties = writer_properties(frame.table(), own)?;
-    let file = File::options().write(true).open(path)?;
-    let mut writer = ArrowWriter::try_new(file, Arc::clone(&schema), Some(properties))?;
-    // Batch by batch: a column of repeated identities is large in memory, though not in the file.
-    for first in (0..frame.row_count().max(1)).step_by(ROW_GROUP) {
-        let rows = first..frame.row_count().min(first + ROW_GROUP);
-        let arrays = frame.columns().map(|(_, data)| array(data, rows.clone())).collect();
-        writer.write(&RecordBatch::try_new(Arc::clone(&schema), arrays)?)?;
-    }
-    writer.close()?;
+    let mut writer = Writer::begin(path, frame.table(), keys)?;
+    writer.add(frame)?;
+    writer.writer.close()?;
     Ok(())
+}
+
+/// Writes the parts of a table into the file at `path`, which is there already; gives the number of rows. At
+/// most one part and one row group are in memory.
+pub(super) fn parts(
+    path: &Path,
+    table: &Table,
+    parts: impl Iterator<Item = Result<Frame, Cause>>,
+    keys: &[(&str, String)],
+) -> Result<usize, Cause> {
+    let mut writer = Writer::begin(path, table, keys)?;
+    let mut count = 0;
+    for part in parts {
+        let part = part?;
+        writer.add(&part)?;
+        count += part.row_count();
+    }
+    writer.writer.close()?;
+    Ok(count)
 }
 
 /// These rows of a column.

@@ -7,7 +7,8 @@ use serde_json::Value;
 use super::{accepted, specs};
 
 /// Bad specs whose fault no JSON Schema shows: it joins several values, or is the point of an integer written as a float.
-const BEYOND: [&str; 19] = [
+const BEYOND: [&str; 24] = [
+    "across_unknown",
     "elements_negligible_adhesion",
     "files_realizations",
     "files_with_file",
@@ -27,6 +28,10 @@ const BEYOND: [&str; 19] = [
     "sweep_grid_too_large",
     "sweep_measured",
     "sweep_names_equal",
+    "zip_not_listed",
+    "zip_single_value",
+    "zip_twice",
+    "zip_unequal",
 ];
 
 /// The schema, parsed.

@@ -31,6 +31,7 @@ def test_short_names(campaign):
         assert getattr(campaign, name)(id).equals(campaign[f"cycles/{id}/{name}"])
     for name in ("cases", "realizations", "curves", "avalanches"):
         assert getattr(campaign, name).equals(campaign[f"statistics/{name}"])
+    assert campaign.all_events.num_rows == campaign.avalanches["event_count"].to_numpy().sum()
     for id in campaign.surface_ids:
         assert campaign.asperities(id).num_rows > 0
 

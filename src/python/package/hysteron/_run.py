@@ -266,6 +266,11 @@ class Run(Mapping[str, pa.Table]):
         """Table of avalanches: one row per avalanche of every cycle."""
         return self["statistics/avalanches"]
 
+    @property
+    def all_events(self) -> pa.Table:
+        """Table of events: one row per event of every cycle."""
+        return self["statistics/events"]
+
     def results(self, realizations: bool = False) -> Any:
         """The table `cases` as `xarray.Dataset` with the dimensions case_id and max_load. Requires xarray.
 

@@ -4,7 +4,7 @@
     run = hysteron.load("data/runs/quickstart")
     hysteron.plot.loop(run)
 
-The colour is the case (palette of Okabe and Ito), the dash is the branch: loading dashed, unloading solid. Each function draws into `ax`, or into new axes,
+The colour is the case, the dash is the branch: loading dashed, unloading solid. Each function draws into `ax`, or into new axes,
 and returns the axes.
 """
 
@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from ._run import Maps, Run
 
 #: Colours of cases.
-PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
+PALETTE = ("#7b3294", "#009e73", "#e69f00", "#cc79a7", "#808000", "#6b472b")
+#: Compression and tension in maps.
+COMPRESSION, TENSION = "#0072b2", "#c0281c"
 
 
 def _axes(ax: Axes | None) -> Axes:
@@ -137,8 +139,8 @@ def curves(run: Run, quantity: str = "area", ax: Axes | None = None) -> Axes:
 def contacts(run: Run, id: str | None = None, step: int | None = None, ax: Axes | None = None) -> Axes:
     """Contact of one cycle at a stored step.
 
-    Contact spots of the asperity model are discs, blue if compressive and orange if tensile. Boundary elements have the real shapes from the stored maps,
-    coloured by the pressure: blue is compressive, orange tensile. These need h5py.
+    Contact spots of the asperity model are discs, blue if compressive and red if tensile. Boundary elements have the real shapes from the stored maps,
+    coloured by the pressure: blue is compressive, red tensile. These need h5py.
 
     Parameters
     ----------
@@ -176,7 +178,7 @@ def _regions(maps: Maps, step: int | None, ax: Axes) -> Axes:
     touches = maps.in_contact()[k]
     pressure = 1e-6 * np.where(touches, maps.pressure_pa[k], np.nan)
     low, high = (float(extreme(pressure[touches], initial=0.0)) for extreme in (np.min, np.max))
-    shades = ["#be4600", "#fad0aa", "#ffffff", "#bed7ee", "#003c6e"]
+    shades = ["#a0140f", "#f6cec4", "#ffffff", "#bed7ee", "#003c6e"]
     colours = LinearSegmentedColormap.from_list("pressure", shades).with_extremes(bad="#f2f2f2")
     norm = TwoSlopeNorm(0.0, min(low, -1e-12 * max(high, 1.0)), max(high, 1e-12 * max(-low, 1.0)))
     side = 1e6 * maps.length_m
@@ -201,7 +203,7 @@ def _spots(run: Run, cycle: str, step: int | None, ax: Axes) -> Axes:
         step = int(known[np.argmax(counts)])
     rows = np.flatnonzero(touching & (number == step))
     centres = np.stack(_columns(table, "centroid_x_m", "centroid_y_m"), axis=1)[rows].astype(float)
-    colours = np.where(load[rows].astype(float) < 0, PALETTE[1], PALETTE[0])
+    colours = np.where(load[rows].astype(float) < 0, TENSION, COMPRESSION)
     diameter = 2e6 * radius[rows].astype(float)
     spots = EllipseCollection(diameter, diameter, np.zeros(rows.size), units="xy", offsets=1e6 * centres, facecolors=colours, alpha=0.85)
     ax.add_collection(spots)
