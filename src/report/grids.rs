@@ -2,7 +2,7 @@
 
 use super::cases::Cases;
 use super::failures::Failure;
-use super::layout::{Numbers, grid, heading, plain, prose, wide};
+use super::layout::{Numbers, grid, heading, plain, prose};
 use super::numbers::{Shown, scaled, shown};
 use crate::figures::Panel;
 use crate::stats::{Listed, StatsError, grid_help, grid_percent};

@@ -11,6 +11,7 @@ use super::fault::Faults;
 use super::keys::Limits;
 use super::nearest::nearest;
 use super::number::number;
+use super::sweep::SweepDraft;
 use super::value::word;
 use super::written::{Written, array, wrong_type};
 
@@ -184,7 +185,8 @@ fn across(value: &Written<'_>, names: &mut Across, faults: &mut Faults<'_>) -> O
 }
 
 /// Adds a fault for each name in `across` that no sweep has.
-pub(super) fn check_across(across: &Across, sweeps: &[&str], faults: &mut Faults<'_>) {
+pub(super) fn check_across(across: &Across, sweeps: &[&SweepDraft], faults: &mut Faults<'_>) {
+    let sweeps: Vec<&str> = sweeps.iter().map(|sweep| sweep.name.as_str()).collect();
     for (name, at) in across.iter().filter(|(name, _)| !sweeps.contains(&name.as_str())) {
         let listed = format!("sweeps of the spec: {}", sweeps.join(", "));
         let help = match nearest(name, sweeps.iter().copied()) {

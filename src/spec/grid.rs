@@ -70,8 +70,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
     sides.check(draft.sides_at.as_ref(), faults);
     // A sweep with a fault has no name.
     if read.len() == sweeps.len() {
-        let names: Vec<&str> = read.iter().map(|sweep| sweep.name.as_str()).collect();
-        check_across(&draft.across, &names, faults);
+        check_across(&draft.across, &read, faults);
     }
     let mut sweeps: Vec<Sweep> = read.into_iter().map(sweep).collect();
     let auto_methods = choices.settle(&mut base, &mut sweeps);
