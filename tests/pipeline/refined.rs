@@ -7,6 +7,7 @@ use hysteron::campaign::Campaign;
 use hysteron::schema;
 use hysteron::spec::Spec;
 use hysteron::stages::sampled;
+use hysteron::stats::grid_percent;
 use hysteron::store::Frame;
 use std::collections::BTreeSet;
 use std::fs;
@@ -80,6 +81,30 @@ fn law_points_per_wavelength_are_the_same_tasks_as_points() {
     assert_eq!(set("boundary_elements.error=0.1").cases.len(), 6);
 }
 
+/// The grid of a scan follows from its size when it is read: 16 per wavelength is the automatic grid, other numbers are tasks of their own.
+#[test]
+fn law_points_per_wavelength_of_a_scan_follow_its_cut_off() {
+    let scan = |grid: &str| {
+        let digest = "0".repeat(64);
+        let text = "name = \"x\"\nsurface.file = \"a.h5\"\nmodel.method = \"boundary_elements\"";
+        read(&format!("{text}\n{grid}\nfiles = {{ \"a.h5\" = \"{digest}\" }}\n"))
+    };
+    let automatic = keys(scan("boundary_elements.points = 0"));
+    assert_eq!(keys(scan("boundary_elements.points_per_wavelength = 16")), automatic);
+    assert_ne!(keys(scan("boundary_elements.points_per_wavelength = 8")), automatic);
+    let [first, list] = ["error = 0.1", "points_per_wavelength = [4, 8, 16]"].map(|grid| scan(&format!("boundary_elements.{grid}")));
+    assert_eq!(keys(first.clone()), keys(list));
+    let finer = keys(first.refined(&[0]));
+    assert_eq!(finer, keys(scan("boundary_elements.points_per_wavelength = [4, 8, 16, 32]")));
+    assert_eq!(finer.len(), 4);
+}
+
+/// One rule for the terminal, the report and `show`: two digits, and no number for grids that disagree.
+#[test]
+fn val_grid_errors_in_per_cent() {
+    assert_eq!([0.005, 0.1234, 1.0, 1.01, 12.0].map(grid_percent), ["0.5 %", "12 %", "100 %", "> 100 %", "> 100 %"]);
+}
+
 /// 12 points per JKR radius of a probe count as 16 per wavelength, as for the automatic grid.
 #[test]
 fn law_points_per_wavelength_of_a_probe_follow_its_radius() {
@@ -109,7 +134,7 @@ fn val_choices_of_a_grid_exclude_one_another() {
             assert!(rendered.contains(part), "{lines}: lacks `{part}`:\n{rendered}");
         }
     }
-    for axis in ["error = [0.1, 0.2]", "points = [16, 32]"] {
+    for axis in ["error = 0.2", "points = 16"] {
         let rendered = refused(&(spec("boundary_elements.error = 0.1") + &format!("boundary_elements.{axis}\n")));
         assert!(rendered.contains("cannot be swept") || rendered.contains("exclude each other"), "{rendered}");
     }
