@@ -168,8 +168,8 @@ impl Values<'_> {
         }
         if let (Some(layer), Some(ratio)) = (self.range("layer_thickness_m")?, self.range("poisson_ratio")?) {
             text += &format!(
-                "The elastic body is a layer of the thickness {layer}, bonded to a rigid base, with Poisson's \
-                 ratio {ratio}. "
+                "The elastic body is a layer of the thickness {layer}, bonded to a rigid base, with \
+                 Poisson's ratio {ratio}. "
             );
         }
         let compliance = self.cases.f64_or_null("machine_compliance_m_n")?;

@@ -11,12 +11,12 @@ use std::ops::Range;
 use toml::de::DeValue;
 
 use super::cases::Cases;
-use super::elements::AUTOMATIC;
 use super::fault::Faults;
 use super::keys::{KEYS, Key, find};
 use super::number::short;
+use super::origin::{Origin, written};
+use super::per_wavelength::AUTOMATIC;
 use super::probe::exclude;
-use super::walk::{Origin, written};
 use super::written::Written;
 use super::{Case, CaseParams, Spec, Value, Values, value};
 use crate::model::{Method, MethodOptions};
@@ -147,25 +147,23 @@ pub(super) fn clear_others(chosen: usize, others: &[&str], values: &mut Values, 
     }
 }
 
+/// Refuses a key of a sweep that holds for all cases; true if it is one.
+pub(super) fn refuses_sweep(key: &Key, at: &Range<usize>, faults: &mut Faults<'_>) -> bool {
+    let refuses = [ERROR, "boundary_elements.max_points"].contains(&key.path);
+    if refuses {
+        let message = format!("`{}` cannot be swept: it holds for all cases", key.path);
+        faults.add(at, message, "move it out of the [[sweep]]".to_owned());
+    }
+    refuses
+}
+
 /// Checks the keys that choose the grid.
-pub(super) fn check_choice(
-    values: &Values,
-    (origins, swept): (&[Origin], &[usize]),
-    faults: &mut Faults<'_>,
-) {
+pub(super) fn check_choice(values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
     let [points, number, error] = CHOICES;
     for pair in [[points, number], [points, error], [number, error]] {
         exclude(pair, "each of them chooses the grids: give one", origins, faults);
     }
     let at = |path: &str| written(place(path), origins);
-    for path in [ERROR, "boundary_elements.max_points"] {
-        if place(path).is_some_and(|key| swept.contains(&key))
-            && let Some(span) = at(path)
-        {
-            let message = format!("`{path}` cannot be swept: it holds for all cases");
-            faults.add(&span, message, "move it out of the [[sweep]]".to_owned());
-        }
-    }
     if let (Some(few @ 1..=3), Some(span)) = (values.elements.per_wavelength, at(number)) {
         let message = format!("`{number}` is {few}: at least 4 are needed");
         faults.add(&span, message, "4 resolve the waves, 8 and more the events".to_owned());

@@ -13,13 +13,14 @@ use super::figures::check_across;
 use super::files::named;
 use super::keys::{KEYS, find};
 use super::number::short;
+use super::origin::{Origin, written};
 use super::probe::check_contact;
 use super::scans::{check_measured, realizations as scan_realizations};
 use super::shape::{blamed, check_spectrum};
 use super::sides::Sides;
 use super::sweep::SweepDraft;
 use super::values::Values;
-use super::walk::{Draft, Origin, written};
+use super::walk::Draft;
 use super::zip::AxisDraft;
 use crate::model::{CaseParams, Detrend, FarField, GeneratedSurface, Method, SurfaceSource};
 
@@ -44,7 +45,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             complete(&mut values, origins);
             sides.set(&mut values, &draft.files, draft.are_sides_read);
             let is_auto = choices.choose(&mut values);
-            coarser::check_choice(&values, (origins, swept), faults);
+            coarser::check_choice(&values, origins, faults);
             let first = coarser::first_grids(&mut values, origins, faults);
             let params = values.case();
             check(&params, &values, (origins, swept), faults);

@@ -18,6 +18,8 @@ mod json_schema;
 mod keys;
 mod nearest;
 mod number;
+mod origin;
+mod per_wavelength;
 mod probe;
 mod psd;
 mod realizations;
@@ -51,12 +53,13 @@ pub use auto::Chooser;
 pub use coarser::COARSER;
 pub use elements::{
     FEWEST_PER_WAVELENGTH, MANY_RANGE_STEPS, MAX_ELEMENTS, MOST_MESH_NUMBER, MOST_PER_WAVELENGTH,
-    automatic_range, mesh_number, shortest_lengths,
+    automatic_range, mesh_number,
 };
 pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};
 pub use json_schema::{SCHEMA_FILE, json_schema};
 pub use keys::{GENERATED, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_GRIDS, OTHER_LOADS, REPLACED, WHERE_USED};
+pub use per_wavelength::shortest_lengths;
 pub use probe::{contact_radius_m, probe_refusal};
 pub use realizations::{Realizations, Until};
 pub use reference::reference;

@@ -4,8 +4,8 @@ use super::elements::latest;
 use super::fault::Faults;
 use super::keys::{Limits, find};
 use super::number::short;
+use super::origin::{Origin, written};
 use super::values::Values;
-use super::walk::{Origin, written};
 use crate::model::{CaseParams, Coalescence, Control, FarField, Material, Method, Probe, SPHERE_SHARE};
 use crate::physics::jkr::Asperity;
 

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::fault::Faults;
 use super::keys::{GENERATED, NAMES, find};
+use super::origin::{Origin, written};
 use super::shape::blamed;
-use super::walk::{Origin, written};
 use super::{Case, Realizations};
 use crate::model::{Boundary, CaseParams, Choice as _, Detrend, MeasuredSurface};
 

@@ -7,8 +7,9 @@ use toml::de::DeTable;
 use super::entries::entries;
 use super::fault::{Faults, OPTION, in_setting};
 use super::keys::{TABLES, find};
+use super::origin::Origin;
 use super::sweep::SweepDraft;
-use super::walk::{Draft, Origin, enter};
+use super::walk::{Draft, enter};
 use super::{SpecErrors, coarser};
 use crate::text::quoted;
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::fault::Faults;
 use super::keys::{OF_TABLE, REPLACED, find};
 use super::number::short;
-use super::walk::{Origin, written};
+use super::origin::{Origin, written};
 use crate::model::GeneratedSurface;
 
 /// The later written of some values of the surface; nothing if one of them has a fault of its own.

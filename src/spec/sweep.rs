@@ -6,6 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::coarser::refuses_sweep;
 use super::entries::{entries, keys, lost, shown};
 use super::fault::Faults;
 use super::keys::{KEYS, TABLES};
@@ -131,6 +132,9 @@ fn sweep(
 /// Reads one axis: an array of values, or a single one. An array is one value for a key that takes an array.
 fn axis(place: usize, written: &Spanned<DeValue<'_>>, faults: &mut Faults<'_>) -> Option<AxisDraft> {
     let key = &KEYS[place];
+    if refuses_sweep(key, &written.span(), faults) {
+        return None;
+    }
     let one = |value: &Spanned<DeValue<'_>>, faults: &mut Faults<'_>| {
         value::read(key, value, faults).map(|read| Spanned::new(value.span(), read))
     };

@@ -1,8 +1,8 @@
 //! A value for each key of a spec, and the case that follows from them.
 
 use super::Value;
-use super::elements::with_points;
 use super::keys::{KEYS, Key, OPTIONAL_TABLES, OTHER_GRIDS, OTHER_LOADS, TABLES};
+use super::per_wavelength::with_points;
 use crate::model::{
     AsperityOptions, Attraction, AttractionKind, CaseParams, Control, ElementOptions, FrontLaw,
     GeneratedSurface, LoadingPath, Machine, Material, MeasuredSurface, Method, MethodOptions, Nucleation,

@@ -13,6 +13,7 @@ use super::fault::Faults;
 use super::figures::{Across, Figures, figures};
 use super::files::files;
 use super::keys::{KEYS, TABLES};
+use super::origin::Origin;
 use super::realizations::{DEFAULT, Realizations, realizations};
 use super::sweep::{SweepDraft, sweeps};
 use super::values::Values;
@@ -47,25 +48,6 @@ pub(super) struct Draft {
     pub(super) sides_at: Option<Range<usize>>,
     /// True if the sides are those of the scans, read for this spec.
     pub(super) are_sides_read: bool,
-}
-
-/// Origin of a value of the base.
-#[derive(Clone)]
-pub(super) enum Origin {
-    /// The spec does not say it.
-    Default,
-    /// It is written here.
-    Written(Range<usize>),
-    /// The written value has a fault of its own, so that nothing follows from it.
-    Faulty,
-}
-
-/// Place of a value in the text, if it is written.
-pub(super) fn written(key: Option<usize>, origins: &[Origin]) -> Option<Range<usize>> {
-    match &origins[key?] {
-        Origin::Written(span) => Some(span.clone()),
-        Origin::Default | Origin::Faulty => None,
-    }
 }
 
 /// Keys at the top of a spec.
