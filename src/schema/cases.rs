@@ -379,12 +379,34 @@ const COUNTS: &[Column] = &[
     )
     .or_null()
     .from("pipelines/validity.toml"),
+    real(
+        "area_model_ratio_error",
+        "1",
+        "Uncertainty of the expected ratio of the contact area: standard deviation over the surfaces of the \
+         table and grid error of boundary elements, added squared",
+    )
+    .or_null()
+    .from("pipelines/validity.toml"),
     real("pull_off_model_ratio", "1", "The same ratio of the pull-off force")
         .or_null()
         .from("pipelines/validity.toml"),
+    real(
+        "pull_off_model_ratio_error",
+        "1",
+        "Uncertainty of the expected ratio of the pull-off force, in the same way",
+    )
+    .or_null()
+    .from("pipelines/validity.toml"),
     real("loss_model_ratio", "1", "The same ratio of the dissipated energy")
         .or_null()
         .from("pipelines/validity.toml"),
+    real(
+        "loss_model_ratio_error",
+        "1",
+        "Uncertainty of the expected ratio of the dissipated energy, in the same way",
+    )
+    .or_null()
+    .from("pipelines/validity.toml"),
     text("load_unit", "Unit of the load reversals in the spec: \"1\" (over E* A0), \"N\" or \"Pa\"")
         .or_null(),
     text("caution", "Codes of all warnings of the row by severity, joined by +; empty without warnings"),

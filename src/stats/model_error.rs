@@ -12,12 +12,20 @@ use std::sync::LazyLock;
 
 const TABLE: &str = include_str!("model_error.csv");
 
-/// Columns of the table `cases`: contact area, pull-off force, dissipated energy.
-pub(super) const COLUMNS: [&str; 3] = ["area_model_ratio", "pull_off_model_ratio", "loss_model_ratio"];
+/// Columns of the table `cases`: ratio of contact area, pull-off force and dissipated energy, each with its
+/// uncertainty.
+pub(super) const COLUMNS: [[&str; 2]; 3] = [
+    ["area_model_ratio", "area_model_ratio_error"],
+    ["pull_off_model_ratio", "pull_off_model_ratio_error"],
+    ["loss_model_ratio", "loss_model_ratio_error"],
+];
+
+/// A ratio and its uncertainty.
+type Ratio = [f64; 2];
 
 /// Ratios of area, pull-off force and dissipated energy; nothing where the surfaces differ by more than the
 /// mean.
-type Ratios = [Option<f64>; 3];
+type Ratios = [Option<Ratio>; 3];
 
 /// A row: coalescence rule, `ln(U_el/Δγ)`, and the ratios.
 type Row = (&'static str, f64, Ratios);
@@ -53,19 +61,26 @@ pub(super) fn outdated() -> Option<String> {
 fn row(line: &'static str) -> Option<Row> {
     let mut cells = line.split(',');
     let coalescence = cells.next()?;
-    let mut number = || cells.next()?.parse::<f64>().ok();
-    let ratio = number()?;
-    Some((coalescence, ratio.ln(), [number(), number(), number()]))
+    let numbers: Vec<Option<f64>> = cells.map(|cell| cell.parse::<f64>().ok()).collect();
+    let number = |at: usize| numbers.get(at).copied().flatten();
+    // Means, standard deviations over the surfaces, and relative grid errors of boundary elements.
+    let ratio = |of: usize| {
+        let (mean, deviation, grid) = (number(1 + of)?, number(4 + of)?, number(7 + of)?);
+        Some([mean, deviation.hypot(mean * grid)])
+    };
+    Some((coalescence, number(0)?.ln(), [ratio(0), ratio(1), ratio(2)]))
 }
 
 /// Ratios of the asperity model with a coalescence rule to boundary elements at `U_el/Δγ`, linear in its
-/// logarithm between the rows of the table; nothing outside.
+/// logarithm between the rows of the table; nothing outside. The uncertainty adds the standard deviation over
+/// surfaces and the grid error of boundary elements, squared.
 pub(super) fn model_error(coalescence: &str, persson_tosatti: f64) -> Option<Ratios> {
     let at = persson_tosatti.ln();
     let rows: Vec<&Row> = ROWS.iter().filter(|row| row.0 == coalescence).collect();
     let pair = rows.windows(2).find(|pair| pair[0].1 <= at && at <= pair[1].1)?;
     let part = (at - pair[0].1) / (pair[1].1 - pair[0].1);
-    Some([0, 1, 2].map(|k| pair[0].2[k].zip(pair[1].2[k]).map(|(low, high)| low + part * (high - low))))
+    let between = |low: Ratio, high: Ratio| [0, 1].map(|at| low[at] + part * (high[at] - low[at]));
+    Some([0, 1, 2].map(|of| pair[0].2[of].zip(pair[1].2[of]).map(|(low, high)| between(low, high))))
 }
 
 /// The columns of a row of the table `cases`; missing without elastic interaction, for boundary elements, for
@@ -86,7 +101,10 @@ pub(super) fn columns(row: &Given, case: &CaseInput) -> Given {
     COLUMNS
         .iter()
         .enumerate()
-        .map(|(k, name)| ((*name).to_owned(), Value::from(found.and_then(|ratios| ratios[k]))))
+        .flat_map(|(of, names)| {
+            let ratio = found.and_then(|ratios| ratios[of]);
+            [0, 1].map(|at| (names[at].to_owned(), Value::from(ratio.map(|ratio| ratio[at]))))
+        })
         .collect()
 }
 
@@ -118,14 +136,16 @@ mod tests {
         assert!(merge.len() > 4 && merge.windows(2).all(|pair| pair[0].1 < pair[1].1));
         let [first, second] = [merge[0], merge[1]];
         let middle = model_error("merge", (0.5 * (first.1 + second.1)).exp());
-        for k in 0..3 {
-            let mean = first.2[k].zip(second.2[k]).map(|(low, high)| 0.5 * (low + high));
-            let found = middle.and_then(|ratios| ratios[k]);
+        for (of, at) in [0, 1, 2].into_iter().flat_map(|of| [(of, 0), (of, 1)]) {
+            let mean = first.2[of].zip(second.2[of]).map(|(low, high)| 0.5 * (low[at] + high[at]));
+            let found = middle.and_then(|ratios| ratios[of]).map(|ratio| ratio[at]);
             assert!(
                 found.zip(mean).is_some_and(|(found, mean)| (found - mean).abs() < 1e-12),
                 "{found:?} and {mean:?}"
             );
         }
+        // Each uncertainty is at least the standard deviation over the surfaces of the table.
+        assert!(ROWS.iter().flat_map(|row| row.2).flatten().all(|[ratio, error]| error > 0.0 && ratio > 0.0));
         assert_eq!(model_error("merge", 1e-3), None);
         assert_eq!(model_error("merge", 1e6), None);
         assert_eq!(model_error("other", 3.0), None);

@@ -341,12 +341,17 @@ fn change(own: f64, reference: f64) -> Option<String> {
 /// If the table lacks a column.
 pub fn expected_ratios(cases: &Frame) -> Result<Option<String>, StatsError> {
     let mut parts = Vec::new();
-    for (name, column) in ["A", "F_po", "Θ"].into_iter().zip(COLUMNS) {
-        let values: Vec<f64> = cases.f64_or_null(column)?.iter().copied().flatten().collect();
-        let [low, high] =
-            [f64::min, f64::max].map(|least: fn(f64, f64) -> f64| values.iter().copied().reduce(least));
-        let Some((low, high)) = low.zip(high) else { continue };
-        let (low, high) = (format!("{low:.2}"), format!("{high:.2}"));
+    for (name, [column, error]) in ["A", "F_po", "Θ"].into_iter().zip(COLUMNS) {
+        let errors = cases.f64_or_null(error)?;
+        let mut values: Vec<(f64, f64)> = cases
+            .f64_or_null(column)?
+            .iter()
+            .zip(errors.iter())
+            .filter_map(|(of, error)| of.zip(*error))
+            .collect();
+        values.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let (Some(low), Some(high)) = (values.first(), values.last()) else { continue };
+        let [low, high] = [low, high].map(|(ratio, error)| format!("{ratio:.2} ± {error:.2}"));
         parts.push(if low == high { format!("{name} {low}") } else { format!("{name} {low} to {high}") });
     }
     let parts = parts.join(", ");
