@@ -331,16 +331,19 @@ fn complete(params: &MeasuredSurface, scan: &Scan) -> Result<(), StageError> {
     if let Some((problem, help)) = twice {
         return Err(refused(Path::new(&params.file), &format!("{problem}\nhelp: {help}")));
     }
-    let size = format!("--size (along x, for example 5um) or --pixel-m; {x} x {y} points");
+    let size = format!(
+        "--size (along x, for example 5um), --pixel-m, or surface.size_m in a spec; {x} x {y} points"
+    );
     let (problem, help) = match (no_unit, no_size) {
         (false, false) => return Ok(()),
-        (true, false) => {
-            ("no unit of the heights in the file", "give the unit (--unit), for example \"nm\"".to_owned())
-        }
+        (true, false) => (
+            "no unit of the heights in the file",
+            "give the unit (--unit, or surface.unit in a spec), for example \"nm\"".to_owned(),
+        ),
         (false, true) => ("no pixel size in the file", format!("give {size}")),
         (true, true) => (
             "no unit of the heights in the file, and no pixel size",
-            format!("give --unit (of the heights, for example nm), and {size}"),
+            format!("give --unit or surface.unit (of the heights, for example nm), and {size}"),
         ),
     };
     let notes: String = scan

@@ -48,7 +48,7 @@ def test_a_message_of_take_has_its_own_terms(program, tmp_path):
     message = str(error.value)
     assert "the array" in message and "pixel_m=" in message and "--" not in message and "array.npy" not in message
     np.save(tmp_path / "scan.npy", heights)
-    with pytest.raises(hysteron.Failed, match=r"scan\.npy: .*\nhelp: give the unit \(unit=\)"):
+    with pytest.raises(hysteron.Failed, match=r"scan\.npy: .*\nhelp: give the unit \(unit=, or surface\.unit in a spec\)"):
         hysteron.take(tmp_path / "scan.npy", pixel_m=1e-9)
 
 
