@@ -40,10 +40,10 @@ pub(crate) const CONSTANTS: &[Constant] = &[
         "law",
     ),
     Constant::new(
-        "half width of the step of the line tension",
-        &[Front::CORRECTED.line_reach],
+        "half width and middle of the step of the line tension",
+        &[Front::CORRECTED.line_reach, Front::CORRECTED.line_place],
         "`dx`",
-        "Corrected law: function φ of the place at the front.",
+        "Corrected law: function φ of the place, ahead of the front.",
         "law/front",
     ),
     Constant::new(

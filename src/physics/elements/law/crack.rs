@@ -59,15 +59,15 @@ impl Profile {
     pub(super) const INSIDE: Self = Self { value: 1.0, rate: 0.0, bend: 0.0, excess: 0.0 };
 }
 
-/// Tension, its slope, and [`Line::nodes`] at the place x of a straight front.
-fn node(front: &Front, line_factor: f64, x: f64) -> ([f64; 2], [f64; 3]) {
+/// Tension, its slope, and [`Line::nodes`] at the place x of a straight front of `scale` times the tension.
+fn node(front: &Front, scale: f64, line_factor: f64, x: f64) -> ([f64; 2], [f64; 3]) {
     let [_, tension, slope] = front.straight(x);
     let ([phi, phi_x, phi_xx], [bend, bend_x]) = (front.step(x), front.bend(x));
     let ([_, gap_x], gap_xx) = (front.gap(x), front.gap_curvature(x));
     let rate = phi_x / gap_x;
     let rate_x = (phi_xx - rate * gap_xx) / gap_x;
     let excess = 2.0 * line_factor * (rate_x * bend + rate * bend_x) / gap_x;
-    ([tension - 2.0 * line_factor * rate * bend, slope - excess], [phi, rate, excess])
+    ([scale * tension - 2.0 * line_factor * rate * bend, scale * slope - excess], [phi, rate, excess])
 }
 
 impl Crack {
@@ -81,9 +81,8 @@ impl Crack {
 
     /// Law of contact on a spring, scaled to the work of adhesion.
     fn soft(front: &Front) -> Self {
-        debug_assert!(front.line == 0.0, "a line tension needs hard contact");
         let mut factor = 1.0;
-        let mut law = Self::scaled(front, factor);
+        let (mut law, mut start) = Self::scaled(front, factor);
         // A fixed point: the energy is nearly linear in the factor.
         for _ in 0..40 {
             let energy = -law.nodes[0][2] + 0.5 * WALL_STIFFNESS * law.onset * law.onset;
@@ -91,15 +90,15 @@ impl Crack {
                 break;
             }
             factor /= energy;
-            law = Self::scaled(front, factor);
+            (law, start) = Self::scaled(front, factor);
         }
         let depth = -(law.nodes[0][2] - 0.5 * WALL_STIFFNESS * law.onset * law.onset);
         debug_assert!((depth - 1.0).abs() < 1e-12, "work of adhesion of the law");
-        law
+        if front.line == 0.0 { law } else { Self::with_line(front, start, factor) }
     }
 
-    /// Table with the tension of the front times `factor`.
-    fn scaled(front: &Front, factor: f64) -> Self {
+    /// Table with the tension of the front times `factor`, and the place at which it begins.
+    fn scaled(front: &Front, factor: f64) -> (Self, f64) {
         // The spring ends where the tension of the front falls below it.
         let excess = |x: f64| {
             let [gap, tension, _] = front.straight(x);
@@ -111,19 +110,24 @@ impl Crack {
             if excess(middle) > 0.0 { low = middle } else { high = middle }
         }
         let start = 0.5 * (low + high);
-        Self::from(front, start, |x| {
+        let law = Self::from(front, start, |x| {
             let [_, tension, slope] = front.straight(x);
             [factor * tension, factor * slope]
-        })
+        });
+        (law, start)
     }
 
     /// Law of hard contact: the front itself, from a place on at which its tension is that of the wall.
     fn hard(front: &Front) -> Self {
-        let start = -(DEEP * front.width).max(front.line_reach + 1.0);
+        Self::with_line(front, -(DEEP * front.width).max(front.line_reach + 1.0), 1.0)
+    }
+
+    /// Table from the place `start` of a front on, of `scale` times its tension, with its line tension.
+    fn with_line(front: &Front, start: f64, scale: f64) -> Self {
         let factor = if front.line == 0.0 { 0.0 } else { front.line_factor() };
         let mut line = Vec::new();
         let mut law = Self::from(front, start, |x| {
-            let (law, step) = node(front, factor, x);
+            let (law, step) = node(front, scale, factor, x);
             line.push(step);
             law
         });
