@@ -1,7 +1,9 @@
 //! Part of the report: measured surfaces.
 
 use super::layout::{heading, prose, wide};
+use super::numbers::minus;
 use crate::model::Choice;
+use crate::stats::{labels_with_unit, significant};
 use crate::store::hdf5::{Measured, SpectrumFit, SurfaceHeader};
 use maud::{Markup, html};
 
@@ -17,25 +19,28 @@ const NOTE: &str = "Each measured surface is one realization, without a standard
     ratio of the principal rms slopes and 1/Str (ISO 25178). Cuts: wavelengths between which the spectrum \
     holds data.";
 
+/// Significant digits of a length.
+const DIGITS: usize = 4;
+
 const HEADS: [&str; 18] = [
     "file",
     "points",
     "area kept",
-    "L [m]",
-    "h_{rms} [m]",
+    "L",
+    "h_{rms}",
     "rms slope",
     "S-filter",
-    "cut-off [m]",
-    "removed by S-filter [m]",
-    "overshoot [m]",
-    "removed by levelling [m]",
+    "cut-off",
+    "removed by S-filter",
+    "overshoot",
+    "removed by levelling",
     "filled",
     "outliers replaced / left",
-    "line offsets removed / left [m]",
-    "tip cut-off [m]",
+    "line offsets removed / left",
+    "tip cut-off",
     "texture aspect",
     "H",
-    "long cut / roll-off / short cut [m]",
+    "long cut / roll-off / short cut",
 ];
 
 /// A table of the measured surfaces of a campaign, if it has any.
@@ -64,11 +69,11 @@ fn artefacts(of: &Measured) -> Markup {
 
 fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
     let [a, b] = of.source_point_counts;
-    let lengths = |values: &[f64]| html! { @for value in values { td { (format!("{value:.3e}")) } } };
+    let lengths = |values: &[f64]| html! { @for value in values { td { (length(Some(*value))) } } };
     html! {
         td { (of.source) }
-        td { (a) " × " (b) }
-        td { (format!("{:.0} %", 100.0 * (1.0 - of.dropped(header.length_m)))) }
+        td { (a) "\u{a0}×\u{a0}" (b) }
+        td { (format!("{:.0}\u{a0}%", 100.0 * (1.0 - of.dropped(header.length_m)))) }
         (lengths(&[header.length_m, header.rms_height_m]))
         td { (format!("{:.3}", header.rms_slope)) }
         td { (of.filter.word()) }
@@ -79,7 +84,7 @@ fn row(header: &SurfaceHeader, of: &Measured) -> Markup {
         td {
             (of.fit.map_or_else(
                 || "–".to_owned(),
-                |fit| format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter),
+                |fit| minus(&format!("{:.2} (±{:.2} decades)", fit.hurst, fit.scatter)),
             ))
         }
         td { (of.fit.map_or_else(|| "–".to_owned(), |fit| ends(&fit, header.length_m))) }
@@ -93,7 +98,12 @@ fn ends(fit: &SpectrumFit, length_m: f64) -> String {
         .join(" / ")
 }
 
-/// A length \[m\], or a dash.
+/// A length \[m\] with four digits and its unit, or a dash.
 fn length(length: Option<f64>) -> String {
-    length.map_or_else(|| "–".to_owned(), |length| format!("{length:.3e}"))
+    let rounded = |length: f64| significant(length, DIGITS).parse().unwrap_or(length);
+    match length {
+        None => "–".to_owned(),
+        Some(0.0) => "0".to_owned(),
+        Some(length) => labels_with_unit("_m", &[rounded(length)]).concat().replace(' ', "\u{a0}"),
+    }
 }
