@@ -43,7 +43,7 @@
     const tools = make("p", "", { class: "tools" });
     const csv = make("button", "Download CSV", { type: "button" });
     csv.addEventListener("click", () => {
-      const texts = (cells) => Array.from(cells, (of) => of.textContent.trim());
+      const texts = (cells) => Array.from(cells, (of) => of.textContent.replace(/\u00a0/g, " ").trim());
       const groups = bodies.some((body) => body.dataset.heading);
       const lines = [[...(groups ? ["sweep"] : []), ...texts(heads)]];
       for (const body of bodies) for (const row of rows(body)) lines.push([...(groups ? [body.dataset.heading] : []), ...texts(row.cells)]);
