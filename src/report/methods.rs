@@ -78,7 +78,10 @@ fn row(pair: &MethodPair, [name, load]: [&str; 2], scales: &[Scale]) -> Markup {
         @for ([asperities, elements, ratio, sd], scale) in pair.quantities.into_iter().zip(scales) {
             td { (scaled(asperities, *scale)) }
             td { (scaled(elements, *scale)) }
-            td { (shown(ratio, Shown::Plain)) @if sd.is_some() { "\u{a0}±\u{a0}" (shown(sd, Shown::Plain)) } }
+            td {
+                (shown(ratio, Shown::Plain))
+                @if sd.is_some() { " " small { "±\u{a0}" (shown(sd, Shown::Plain)) } }
+            }
         }
     }
 }

@@ -66,7 +66,7 @@ pub(super) fn with_half_width(number: Option<f64>, half: Option<f64>, scale: Sca
     let Some(((number, half), exponent)) = known else { return scaled(number, scale) };
     let [number, half] = [number, half].map(|value| value / 10f64.powi(exponent));
     let places = decimals(half, 2).min(5);
-    html! { (minus(&format!("{number:.places$}"))) "\u{a0}±\u{a0}" (format!("{half:.places$}")) }
+    html! { (minus(&format!("{number:.places$}"))) " " small { "±\u{a0}" (format!("{half:.places$}")) } }
 }
 
 /// A number as two digits and a power of ten.
