@@ -29,8 +29,8 @@ pub(super) fn of_sweep(
             format!("Dissipated energy {loss} against {axis}, with the estimates of Deng and Kesari")
         }
         'E' => format!("Dissipated energy {loss} of the events of each branch against {axis}"),
-        _ => "Number of avalanches per surface whose dissipated energy is at least that of the abscissa; loading \
-              dashed, unloading solid"
+        _ => "Number of avalanches per surface whose dissipated energy is at least that of the abscissa; \
+              loading dashed, unloading solid"
             .to_owned(),
     };
     let mut parts = vec![format!("{what}{}; {surfaces}", cases(sweep, &plot.title))];
@@ -146,8 +146,11 @@ pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
         }
         "avalanches" => "Number of avalanches with at least s events".to_owned(),
         "radii" => "Cumulative distribution of the contact radius over the side L of the square".to_owned(),
+        "loads" if of.pull_off_n_m == 0.0 => {
+            "Cumulative distribution of the load of each contact spot; positive in compression".to_owned()
+        }
         "loads" => "Cumulative distribution of the load of each contact spot over the pull-off force of its \
-             asperity; positive in compression"
+             asperity, without merged contacts; positive in compression"
             .to_owned(),
         "spectrum" => spectrum(of),
         _ => "Probability density of the summit curvatures, with Nayak's distribution for the realised \

@@ -185,7 +185,7 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                     tr {
                         td { (kind.label) " (" (kind.code) ")" }
                         td { (plain(measured)) }
-                        td { (prose(kind.consequence)) " " (prose(kind.action)) }
+                        td { (plain(kind.consequence)) " " (plain(kind.action)) }
                         td { (places(cases, rows)) }
                     }
                     "\n"

@@ -143,11 +143,7 @@ fn law_labels_of_a_sweep_have_no_float_noise() {
     for label in ["Δγ = 0.01 J/m², ε = 0.5 nm", "Δγ = 0.055 J/m², ε = 1 nm", "Δγ = 0.1 J/m², ε = 3 nm"] {
         assert!(of.contains(&label), "{label} is not in {of:?}");
     }
-    assert!(
-        drawn[0].caption.contains("for Δγ = 0.01 J/m², 0.055 J/m², 0.1 J/m² with ε = 0.5 nm, 1 nm, 3 nm; mean of 2 surfaces"),
-        "{}",
-        drawn[0].caption
-    );
+    assert!(drawn[0].caption.contains("for Δγ = 0.01, 0.055, 0.1 J/m² with ε = 0.5, 1, 3 nm; mean of 2 surfaces"), "{}", drawn[0].caption);
 }
 
 #[test]
