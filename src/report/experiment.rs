@@ -1,7 +1,7 @@
 //! Part of the report: measured loops and the simulated ones.
 
 use super::cases::Cases;
-use super::layout::{Numbers, grid, heading, prose, wide};
+use super::layout::{Numbers, grid, heading, prose, unbroken, wide};
 use super::numbers::{Scale, scaled, with_half_width};
 use crate::figures::Panel;
 use crate::stats::StatsError;
@@ -82,7 +82,7 @@ pub(super) fn section(
     let measured = sources.iter().map(|source| html! { td { (source) } td { "measured" } });
     let simulated = cases.rows().iter().map(|listed| {
         let load = format!("{} = {}", cases.load_symbol(), cases.load(listed.row));
-        html! { td { (listed.label) ", " (prose(&load)) } td { "simulated" } }
+        html! { td { (unbroken(&listed.label)) ", " (prose(&unbroken(&load))) } td { "simulated" } }
     });
     let rows: Vec<Markup> = measured
         .chain(simulated)

@@ -98,6 +98,17 @@ fn law_bands_are_inside_their_panel() {
 }
 
 #[test]
+fn val_a_range_within_a_decade_has_ticks_at_doublings() {
+    let ticks = |low: f64, high: f64| {
+        let axis = Axis::of_decades("x", [low, high]);
+        axis.ticks().into_iter().map(|tick| axis.tick_label(tick)).collect::<Vec<_>>()
+    };
+    assert_eq!(ticks(0.24, 0.9), ["0.25", "0.5", "1"]);
+    assert_eq!(ticks(1.0, 8.0), ["1", "2", "4", "8"]);
+    assert_eq!(ticks(0.5, 30.0), ["10^{0}", "10^{1}"]);
+}
+
+#[test]
 fn law_the_power_of_ten_of_an_axis_joins_its_unit() {
     let label = |label: &str, most: f64| Axis::holding(label, [0.0, most], true).full_label();
     assert_eq!(label("Δγ [J/m^{2}]", 0.07), "Δγ [10^{−3} J/m^{2}]");
