@@ -79,7 +79,7 @@ fn e2e_the_closer_look_is_in_the_table_of_panels() {
     let largest = (0..losses.len()).max_by(|u, v| losses[*u].total_cmp(&losses[*v])).unwrap();
     let (zeta, max_load) = (cases.f64("magnification").unwrap()[largest], cases.f64("max_load").unwrap()[largest]);
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
-    let section = page.split(">Single cycle</h2>").nth(1).unwrap();
+    let section = page.split(">Single cycle</h2>").nth(1).unwrap().split("<h2").next().unwrap();
     let parameters = format!("ζ = {zeta}, H = 0.8, h<sub>rms</sub> = 5 µm, L = 1 mm, E* = 1 MPa, Δγ = 0.07 J/m²");
     assert!(
         section.contains(&format!("the load reversal and back, for {parameters}"))
