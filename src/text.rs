@@ -9,6 +9,19 @@ pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
+/// Values in a list; a unit that all have follows the last one: "0.01, 0.02 J/m²".
+#[must_use]
+pub fn with_one_unit(values: &[&str]) -> String {
+    let parts: Vec<(&str, &str)> = values.iter().filter_map(|value| value.split_once(' ')).collect();
+    match parts[..] {
+        [(_, unit), ..] if parts.len() == values.len() && parts.iter().all(|(_, other)| *other == unit) => {
+            let numbers: Vec<&str> = parts.iter().map(|(number, _)| *number).collect();
+            format!("{} {unit}", numbers.join(", "))
+        }
+        _ => values.join(", "),
+    }
+}
+
 /// A duration as a person writes it: "5.1 s", "2m 30s", "3h 5m".
 #[must_use]
 pub fn in_words(seconds: f64) -> String {

@@ -73,7 +73,7 @@ impl Stage {
             Self::Cycle => 18,
             // 15: events of all cycles in one table.
             Self::Aggregate => 15,
-            Self::Report => 17,
+            Self::Report => 18,
         }
     }
 }

@@ -14,6 +14,9 @@ pub struct Axis {
     scale: Scale,
 }
 
+/// Numbers that ticks at doublings show readably.
+const READABLE: (f64, f64) = (0.05, 1e5);
+
 /// Meaning of a length along the axis.
 #[derive(Debug, Clone, PartialEq)]
 enum Scale {
@@ -62,10 +65,13 @@ impl Axis {
         }
     }
 
-    /// An axis on which a factor of ten is always the same distance, with a tick at each power of ten; of
-    /// values that are not positive it holds none.
+    /// An axis on which a factor of ten is always the same distance, with a tick at each power of ten, or at
+    /// doublings where it has one power of ten at most; of values that are not positive it holds none.
     pub fn of_decades(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let (low, high) = extent(values.into_iter().filter(|value| *value > 0.0));
+        if low >= READABLE.0 && high <= READABLE.1 && high.log10().floor() <= low.log10().ceil() {
+            return Self::of_doublings(label, [low, high]);
+        }
         let (low, high) = (low.max(f64::MIN_POSITIVE).log10(), high.max(f64::MIN_POSITIVE).log10());
         let air = 0.06 * (high - low).max(1.0);
         let step = ((high - low) / 6.0).ceil().max(1.0);
@@ -131,6 +137,7 @@ impl Axis {
     pub fn tick_label(&self, drawn: f64) -> String {
         match &self.scale {
             Scale::Linear => {}
+            Scale::Doublings if drawn < 0.0 => return drawn.exp2().to_string(),
             Scale::Doublings => return format!("{:.0}", drawn.exp2()),
             Scale::Decades => return format!("10^{{{:.0}}}", drawn + 0.0).replace('-', "−"),
             Scale::Words(words) => {

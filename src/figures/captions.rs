@@ -3,9 +3,10 @@
 use super::curve::{Curve, Stroke, XyPlot};
 use super::cycle_loop::Closer;
 use super::paths::{MOST_FACETS, places};
-use super::sweep::Sweep;
+use super::sweep::{Sweep, said};
 use super::units::{Quantity, Scales};
 use crate::stats::{Values, significant};
+use crate::text::with_one_unit;
 
 /// Values of one parameter that a caption lists; of more, it states the range.
 const MOST_VALUES: usize = 8;
@@ -19,19 +20,21 @@ pub(super) fn of_sweep(
 ) -> String {
     let symbol = |of: Quantity| plain(scales.label(of));
     let (load, loss) = (symbol(Quantity::Load), symbol(Quantity::Loss));
+    let axis = plain(&sweep.axis.label);
     let what = match letter {
         'A' => format!("Real contact area {} against normal force {load}", symbol(Quantity::Area)),
-        'B' => format!("Pull-off force {}", symbol(Quantity::PullOff)),
+        'B' => format!("Pull-off force {} against {axis}", symbol(Quantity::PullOff)),
         'C' => format!("Mean penetration {} against normal force {load}", symbol(Quantity::Penetration)),
-        'D' => format!("Dissipated energy {loss}, with the estimates of Deng and Kesari"),
-        'E' => format!("Dissipated energy {loss} of the events of each branch"),
-        _ => "Avalanches per surface with at least a dissipated energy, over all surfaces; loading dashed, \
-              unloading solid"
+        'D' => {
+            format!("Dissipated energy {loss} against {axis}, with the estimates of Deng and Kesari")
+        }
+        'E' => format!("Dissipated energy {loss} of the events of each branch against {axis}"),
+        _ => "Number of avalanches per surface whose dissipated energy is at least that of the abscissa; \
+              loading dashed, unloading solid"
             .to_owned(),
     };
-    let mut parts = vec![format!("{what}{}; {surfaces}", cases(sweep))];
+    let mut parts = vec![format!("{what}{}; {surfaces}", cases(sweep, &plot.title))];
     if !plot.title.is_empty() {
-        parts.push(format!("at {}", plot.title));
         let values = places(sweep).len();
         if values > MOST_FACETS {
             parts.push(format!(
@@ -79,11 +82,14 @@ pub(super) fn data(name: &str) -> String {
     format!(" Data: statistics/panels.parquet (panel {name}).")
 }
 
-/// The cases of a sweep: `, for ζ = 32, 64`.
-fn cases(sweep: &Sweep) -> String {
+/// The cases of a panel: `, for ζ = 32, 64`. A panel with the title `ζ = 32` has only those with this value.
+fn cases(sweep: &Sweep, title: &str) -> String {
+    let own = sweep.differing.len().min(1 + sweep.following);
+    let facet = |place: usize| said(&sweep.differing[..own], place).join(", ");
+    let shown = |place: &usize| title.is_empty() || facet(*place) == title;
     let mut parts = Vec::new();
     for (at, parameter) in sweep.differing.iter().enumerate() {
-        let mut places: Vec<usize> = (0..sweep.members.len()).collect();
+        let mut places: Vec<usize> = (0..sweep.members.len()).filter(shown).collect();
         match &parameter.values {
             Values::Numbers(numbers) => places
                 .sort_by(|a, b| numbers[*a].unwrap_or(f64::NAN).total_cmp(&numbers[*b].unwrap_or(f64::NAN))),
@@ -99,7 +105,7 @@ fn cases(sweep: &Sweep) -> String {
             [first, .., last] if texts.len() > MOST_VALUES => {
                 format!("{} = {first} to {last} ({} values)", parameter.symbol, texts.len())
             }
-            _ => format!("{} = {}", parameter.symbol, texts.join(", ")),
+            _ => format!("{} = {}", parameter.symbol, with_one_unit(&texts)),
         };
         let before = match at {
             0 => ", for ",
@@ -140,8 +146,11 @@ pub(super) fn of_cycle(name: &str, of: &Closer<'_>) -> String {
         }
         "avalanches" => "Number of avalanches with at least s events".to_owned(),
         "radii" => "Cumulative distribution of the contact radius over the side L of the square".to_owned(),
+        "loads" if of.pull_off_n_m == 0.0 => {
+            "Cumulative distribution of the load of each contact spot; positive in compression".to_owned()
+        }
         "loads" => "Cumulative distribution of the load of each contact spot over the pull-off force of its \
-             asperity; positive in compression"
+             asperity, without merged contacts; positive in compression"
             .to_owned(),
         "spectrum" => spectrum(of),
         _ => "Probability density of the summit curvatures, with Nayak's distribution for the realised \

@@ -22,8 +22,8 @@ const MOST_POINTS: usize = 2000;
 /// Points of a distribution, at most.
 const MOST_RANKS: usize = 300;
 
-/// Bars of the histogram of curvatures.
-const BARS: usize = 40;
+/// Bars of the histogram of curvatures, at most.
+const MOST_BARS: usize = 40;
 
 /// Panels of a single cycle, and the maps of its contact spots. Panels of contact spots that were not kept
 /// are omitted.
@@ -275,10 +275,13 @@ fn summits(of: &Closer<'_>) -> Result<XyPlot, FigureError> {
     let curvatures: Vec<f64> =
         of.asperities.f64("curvature_1_m")?.iter().map(|k| k / of.curvature_1_m).collect();
     let most = curvatures.iter().copied().fold(0.0, f64::max).max(1.0);
-    let width = most / BARS as f64;
-    let mut counts = [0usize; BARS];
+    // Rule of Rice.
+    let wanted = (2.0 * (curvatures.len() as f64).cbrt()).ceil() as usize;
+    let mut counts = vec![0usize; wanted.clamp(1, MOST_BARS)];
+    let width = most / counts.len() as f64;
     for curvature in &curvatures {
-        counts[((curvature / width) as usize).min(BARS - 1)] += 1;
+        let place = ((curvature / width) as usize).min(counts.len() - 1);
+        counts[place] += 1;
     }
     let unit = 1.0 / (width * curvatures.len().max(1) as f64);
     // Its outline: each bar from its left to its right end.

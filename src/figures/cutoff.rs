@@ -42,7 +42,7 @@ const BANDS: [(&str, [&str; 2], [u8; 3]); 2] = [
 ];
 
 /// Works of adhesion of one case over the cut-off wavelength, from the table `cutoff`; nothing without rows
-/// of the case. `number` distinguishes the panels of a report.
+/// of the case or where no model has a value. `number` distinguishes the panels of a report.
 ///
 /// # Errors
 /// If the table lacks a column.
@@ -62,6 +62,9 @@ pub fn works_over_cut_off(
         let points = rows.iter().filter_map(|row| Some((cut_offs[*row], values[*row]?))).collect();
         curves.push(curve(column, &of.label, points, shade(hue, 0, 1), stroke));
     }
+    if curves.iter().all(|curve| curve.points.is_empty()) {
+        return Ok(None);
+    }
     for ((name, work), hue) in of.names.iter().zip(of.works_j_m2).zip([RESULT, OTHER]) {
         let line = work.map(|work| ends.map(|end| (end, work)).to_vec()).unwrap_or_default();
         curves.push(curve(name, &of.label, line, shade(hue, 0, 1), Stroke::Solid));
@@ -69,22 +72,32 @@ pub fn works_over_cut_off(
     let name = format!("works_{number}");
     let x = axis(ends, &mut curves);
     let y = Axis::holding("w [J/m²]", curves.iter().flat_map(Curve::heights), false).with_headroom(0.6);
+    let has = |prefix: &str, is_band: bool| {
+        let drawn = |curve: &&Curve| !curve.points.is_empty() && curve.band == is_band;
+        curves.iter().filter(drawn).any(|curve| curve.name.starts_with(prefix))
+    };
+    let bands = if has("work_pinning", true) {
+        " Bands: pinning, Δγ ∓ kU_el with k = 1.2 to 3, where kU_el < Δγ/2."
+    } else {
+        ""
+    };
     let caption = format!(
         "Work of adhesion w against the cut-off wavelength λ_c: models for the roughness of all wavelengths \
-         from λ_c up, and the simulated works of all roughness as horizontal lines, for {}. Bands: pinning, \
-         Δγ ∓ kU_el with k = 1.2 to 3, where kU_el < Δγ/2. Data: statistics/cutoff.parquet.{}",
+         from λ_c up, where U_el < Δγ, and the simulated works of all roughness as horizontal lines, for \
+         {}.{bands}{}",
         of.label,
         captions::data(&name)
     );
     let names = of.names.map(|name| format!("simulated, {name}"));
-    let key = vec![
-        entry(&names[0], RESULT, Some(Stroke::Solid), false),
-        entry(&names[1], OTHER, Some(Stroke::Solid), false),
-        entry("Persson–Tosatti", THEORY, Some(Stroke::Solid), false),
-        entry("Dalvi, Δγ − U_{el}", THEORY, Some(Stroke::Dotted), false),
-        entry("pinning, k = 1.2", NEUTRAL, Some(Stroke::Dashed), false),
-        entry("pinning, k = 1.2 to 3", NEUTRAL, Some(Stroke::Area), false),
+    let key = [
+        (has(of.names[0], false), entry(&names[0], RESULT, Some(Stroke::Solid), false)),
+        (has(of.names[1], false), entry(&names[1], OTHER, Some(Stroke::Solid), false)),
+        (has(MODELS[0].0, false), entry("Persson–Tosatti", THEORY, Some(Stroke::Solid), false)),
+        (has(MODELS[1].0, false), entry("Dalvi, Δγ − U_{el}", THEORY, Some(Stroke::Dotted), false)),
+        (has("work_pinning", false), entry("pinning, k = 1.2", NEUTRAL, Some(Stroke::Dashed), false)),
+        (has("work_pinning", true), entry("pinning, k = 1.2 to 3", NEUTRAL, Some(Stroke::Area), false)),
     ];
+    let key = key.into_iter().filter(|(is_drawn, _)| *is_drawn).map(|(_, entry)| entry).collect();
     let plot = XyPlot { stem: name.clone(), key, ..plot(String::new(), x, y, curves, &[]) };
     Ok(Some(Panel::alone(&name, caption, plot)))
 }

@@ -1,7 +1,7 @@
 //! Contact of boundary elements with its pressure, at the load reversal and at pull-off.
 
 use super::drawing::Drawing;
-use super::map::{ABOVE, GAP, LEGEND, SIDE, power, scale_bar};
+use super::map::{ABOVE, GAP, LEGEND, SIDE, depth, power, scale_bar};
 use super::{FigureError, markup};
 use crate::stats::{labels_with_unit, significant};
 use crate::store::{Frame, LoopMaps, StoredMap};
@@ -78,7 +78,7 @@ pub(super) fn map(parameters: &str, steps: &Frame, maps: &LoopMaps) -> Result<Dr
         let _ = write!(
             svg,
             "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{words}: A/A_{{0}} = {:.3}</text>\
-             <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {:.2}</text>\
+             <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {}</text>\
              <g transform=\"translate({left} {ABOVE})\">\
              <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"{APART}\"/>{}\
              <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" stroke=\"black\"/>{}</g>",
@@ -86,7 +86,7 @@ pub(super) fn map(parameters: &str, steps: &Frame, maps: &LoopMaps) -> Result<Dr
             number(&areas),
             ABOVE - 6.0,
             power(number(&loads)),
-            number(&penetrations),
+            depth(number(&penetrations)),
             cells(map, maps.contact_gap_m, scale),
             scale_bar(maps.length_m)
         );

@@ -57,14 +57,19 @@ pub fn over_grids(grids: &Frame, of: &OfGrids<'_>, number: usize) -> Result<Opti
         key.push(entry(&format!("{name}, grid error"), hue, Some(Stroke::Area), false));
     }
     let name = format!("grids_{number}");
-    let x = Axis::holding("1/N, spacing over shortest wavelength", [0.0, coarsest], true);
+    let x = Axis::holding("grid spacing/shortest wavelength", [0.0, coarsest], true);
     let heights = curves.iter().flat_map(Curve::heights).map(|height| height.clamp(SHOWN[0], SHOWN[1]));
-    let y = Axis::holding("over value on finest grid", heights, false);
+    let y = Axis::holding("value/value on finest grid", heights, false);
+    let has = |wanted: &str| curves.iter().any(|curve| curve.name == wanted && !curve.points.is_empty());
+    let bands = if has("grid_error") { " Bands: estimated error of the finest grid." } else { "" };
+    let limits = if has("extrapolated") {
+        " Diamonds: extrapolated to an infinitely fine grid, where three grids have a regular series."
+    } else {
+        ""
+    };
     let caption = format!(
-        "Θ and F_po on grids of N points per shortest wavelength over their values on the finest grid, for \
-         {}: means over surfaces that all grids have. Bands: estimated error of the finest grid. Diamonds: \
-         extrapolated to an infinitely fine grid, where three grids have a regular series. Data: \
-         statistics/grids.parquet.{}",
+        "Θ and F_po against the grid spacing, over their values on the finest grid, for {}: means over \
+         surfaces that all grids have.{bands}{limits}{}",
         of.label,
         captions::data(&name)
     );

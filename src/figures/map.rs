@@ -51,7 +51,7 @@ pub(super) fn map(
         let _ = write!(
             svg,
             "<text x=\"{left}\" y=\"{}\" font-size=\"14\">{}: {}</text>\
-             <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {:.2}</text>\
+             <text x=\"{left}\" y=\"{}\" font-size=\"13\">F/(E^{{*}}A_{{0}}) = {}, Δ/h_{{rms}} = {}</text>\
              <g transform=\"translate({left} {top})\"><g clip-path=\"url(#map-edge)\">\
              <use xlink:href=\"#map-heights\"/>{spots}</g>\
              <rect x=\"0\" y=\"0\" width=\"{SIDE}\" height=\"{SIDE}\" fill=\"none\" \
@@ -61,7 +61,7 @@ pub(super) fn map(
             counted(count, "contact spot"),
             top - 6.0,
             power(number(&loads)),
-            number(&penetrations)
+            depth(number(&penetrations))
         );
     }
     svg += &legend(height - LEGEND + 14.0, heights_m);
@@ -73,6 +73,11 @@ pub(super) fn map(
         of.parameters
     );
     Ok(Some(Drawing::new("closer_map", caption, &markup::render(&svg))))
+}
+
+/// A mean penetration over the rms height, with two decimals.
+pub(super) fn depth(penetration: f64) -> String {
+    format!("{penetration:.2}").replace('-', "−")
 }
 
 /// Beginning of an SVG of maps: the heights and the edge of a map are its definitions

@@ -68,7 +68,7 @@ pub(super) fn noted<'a>(
     curves: &[Curve],
 ) -> Vec<Note> {
     let beside = !sweep.differing.is_empty();
-    let named = members.into_iter().zip(curves).filter(|_| curves.len() > 1);
+    let named = members.into_iter().zip(curves).filter(|_| curves.len() > 1 || sweep.has_facets);
     let note = |(member, curve): (&Member, &Curve)| {
         let text = if sweep.has_facets { &member.series } else { &member.label };
         curve.points.first().map(|end| Note { at: *end, text: text.clone(), beside })

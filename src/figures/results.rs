@@ -126,7 +126,7 @@ fn predict(
     drawn: &mut Drawn,
 ) -> Result<(), FigureError> {
     let means = tables.cases.f64_or_null(&format!("{theory}_mean"))?;
-    let (mut any, mut marked) = (false, false);
+    let (mut any, mut marked, mut lined) = (false, false, false);
     for name in series {
         let points: Vec<(f64, f64)> =
             joined(sweep, name).filter_map(|member| point(means, member, unit)).collect();
@@ -140,10 +140,12 @@ fn predict(
         let line = Curve { joined: sweep.is_joined(), ..curve(theory, name, points, shown, stroke) };
         any |= !line.points.is_empty();
         marked |= line.is_marked();
+        lined |= line.points.len() > 1;
         drawn.curves.push(line);
     }
     if any {
-        drawn.key.push(KeyEntry { joined: sweep.is_joined(), ..entry(text, THEORY, Some(stroke), marked) });
+        let joined = sweep.is_joined() && lined;
+        drawn.key.push(KeyEntry { joined, ..entry(text, THEORY, Some(stroke), marked) });
     }
     Ok(())
 }
@@ -161,7 +163,7 @@ fn measure(
     let Measured { name, text, stroke, positive } = *of;
     let column = |end: &str| tables.cases.f64_or_null(&format!("{source}_{end}"));
     let (means, sds) = (column("mean")?, column("sd")?);
-    let mut spread = false;
+    let (mut spread, mut lined) = (false, false);
     for series_name in series {
         let members: Vec<&Member> =
             joined(sweep, series_name).filter(|member| point(means, member, unit).is_some()).collect();
@@ -184,6 +186,7 @@ fn measure(
             hues.resize(crosses.len(), member.colour.clone());
         }
         spread |= errors.iter().any(Option::is_some);
+        lined |= points.len() > 1;
         let shown = line_colour(sweep, series_name, NEUTRAL);
         let mean = curve(name, series_name, points, shown.clone(), stroke);
         let mark_colours = members.iter().map(|member| member.colour.clone()).collect();
@@ -201,8 +204,16 @@ fn measure(
         }
     }
     let text = if spread { format!("{text}, ± one standard deviation") } else { text.to_owned() };
-    drawn.key.push(KeyEntry { joined: sweep.is_joined(), ..entry(&text, NEUTRAL, Some(stroke), true) });
+    let sample = entry(&text, NEUTRAL, Some(stroke), true);
+    let colour = lone(sweep).map_or(sample.colour, |member| member.colour.clone());
+    drawn.key.push(KeyEntry { colour, joined: sweep.is_joined() && lined, ..sample });
     Ok(())
+}
+
+/// The only finished member.
+fn lone(sweep: &Sweep) -> Option<&Member> {
+    let mut finished = sweep.members.iter().filter(|member| member.is_finished);
+    finished.next().filter(|_| finished.next().is_none())
 }
 
 fn point(means: &[Option<f64>], member: &Member, unit: Unit<'_>) -> Option<(f64, f64)> {

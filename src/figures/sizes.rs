@@ -31,7 +31,8 @@ pub(super) fn sizes(tables: &Tables<'_>, sweep: &Sweep, units: Units) -> Result<
         let mut curves: Vec<Curve> = loading.collect();
         let back = |member: &&Member| of(member, "unloading", Some(member.max_load), Stroke::Solid);
         let unloading: Vec<Curve> = members.iter().map(back).collect();
-        let notes = noted(sweep, members.iter().copied(), &unloading);
+        let ends: Vec<Curve> = unloading.iter().map(|back| at_largest(back, &curves)).collect();
+        let notes = noted(sweep, members.iter().copied(), &ends);
         curves.extend(unloading);
         curves.retain(|curve| !curve.points.is_empty());
         (facet_title(sweep, &members), curves, notes)
@@ -49,6 +50,13 @@ pub(super) fn sizes(tables: &Tables<'_>, sweep: &Sweep, units: Units) -> Result<
         XyPlot { title, notes, ..unnamed([x.clone(), y.clone()], curves, key) }
     };
     Ok(groups.into_iter().map(plot).collect())
+}
+
+/// A curve of the one point at which its name begins: the largest value of it and of loading.
+fn at_largest(back: &Curve, loading: &[Curve]) -> Curve {
+    let of_it = loading.iter().filter(|curve| curve.of == back.of).chain([back]);
+    let last = of_it.filter_map(|curve| curve.points.last()).max_by(|a, b| a.0.total_cmp(&b.0));
+    Curve { points: last.copied().into_iter().collect(), ..back.clone() }
 }
 
 /// Number per surface of values of at least each value; of many values, some evenly spaced in the logarithm

@@ -196,7 +196,7 @@ fn following(differing: &mut [Varying]) -> usize {
 }
 
 /// Values of parameters that a case has.
-fn said(of: &[Varying], place: usize) -> Vec<String> {
+pub(super) fn said(of: &[Varying], place: usize) -> Vec<String> {
     let present = of.iter().filter(|parameter| !parameter.is_absent(place));
     present.map(|parameter| parameter.named(place)).collect()
 }
@@ -242,7 +242,8 @@ fn is_grid(members: &[Member]) -> bool {
 }
 
 /// Colours the members: a colour for each value of what varies, with several parameters for each series, and
-/// for each load where only the load varies. Numbers have colours in their order.
+/// for each load where only the load varies. Numbers have colours in their order. Cases that are not drawn
+/// use no colour of their own.
 fn colour(members: &mut [Member], differing: &[Varying], following: usize, by_series: bool) {
     let mut loads: Vec<f64> = members.iter().map(|member| member.max_load).collect();
     loads.sort_by(f64::total_cmp);
@@ -253,7 +254,7 @@ fn colour(members: &mut [Member], differing: &[Varying], following: usize, by_se
         _ => member.case_id.clone(),
     };
     let mut known: Vec<String> = Vec::new();
-    for member in &*members {
+    for member in members.iter().filter(|member| member.is_finished) {
         if !known.contains(&word(member)) {
             known.push(word(member));
         }
@@ -285,7 +286,8 @@ fn words(of: Option<&Varying>) -> Vec<String> {
 }
 
 fn axis(differing: &[Varying], words: Vec<String>, members: &[Member]) -> Axis {
-    let values: Vec<f64> = members.iter().map(|member| member.x).filter(|x| x.is_finite()).collect();
+    let finished = members.iter().filter(|member| member.is_finished);
+    let values: Vec<f64> = finished.map(|member| member.x).filter(|x| x.is_finite()).collect();
     let (least, most) =
         (values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max));
     match differing.first() {

@@ -1,7 +1,7 @@
 //! Units of the panels of a sweep.
 
 use super::FigureError;
-use super::sweep::{Sweep, Tables};
+use super::sweep::{Member, Sweep, Tables};
 use std::collections::HashMap;
 
 /// Units of the panels of a sweep.
@@ -46,18 +46,23 @@ pub(super) struct Scales<'a> {
     /// Nominal areas \[m²\] and rms heights \[m\] of the surfaces of each row; nothing where they differ.
     area_m2: Vec<Option<f64>>,
     rms_height_m: Vec<Option<f64>>,
+    /// True if penetrations are in micrometres: a surface of the sweep has that rms height.
+    is_in_um: bool,
 }
 
 impl<'a> Scales<'a> {
     pub(super) fn of(tables: &Tables<'a>, sweep: &Sweep, units: Units) -> Result<Self, FigureError> {
         let radius = tables.cases.f64_or_null("probe_radius_m")?;
         let of_si = |column| if units == Units::Si { common(tables, column) } else { Ok(Vec::new()) };
+        let rms_height_m = of_si("rms_height_m")?;
+        let height = |member: &Member| rms_height_m.get(member.row).copied().flatten();
         Ok(Self {
+            is_in_um: sweep.members.iter().filter_map(height).any(|height| height >= 1e-6),
             units,
             of_probe: sweep.members.iter().all(|member| radius.get(member.row).is_some_and(Option::is_some)),
             modulus_pa: tables.cases.f64_or_null("contact_modulus_pa")?,
             area_m2: of_si("nominal_area_m2")?,
-            rms_height_m: of_si("rms_height_m")?,
+            rms_height_m,
         })
     }
 
@@ -90,6 +95,7 @@ impl<'a> Scales<'a> {
             (Units::Dimensionless, Quantity::Loss, _) => "Θ/(E^{*}A_{0}h_{rms})",
             (Units::Dimensionless, Quantity::Area, _) | (Units::Si, Quantity::Area, false) => "A/A_{0}",
             (Units::Si, Quantity::Area, true) => "A [m²]",
+            (Units::Si, Quantity::Penetration, _) if self.is_in_um => "Δ [µm]",
             (Units::Si, Quantity::Penetration, _) => "Δ [nm]",
             (Units::Si, Quantity::Load, false) => "F/A_{0} [kPa]",
             (Units::Si, Quantity::Load, true) => "F [N]",
@@ -106,12 +112,13 @@ impl<'a> Scales<'a> {
         if self.units == Units::Dimensionless {
             return Some(1.0);
         }
-        // Milli, kilo and nano of the labels per area.
+        let length = if self.is_in_um { 1e6 } else { 1e9 };
+        // Milli and kilo of the labels per area.
         let (area, milli, kilo) =
             if self.of_probe { (of_row(&self.area_m2)?, 1.0, 1.0) } else { (1.0, 1e3, 1e-3) };
         match of {
             Quantity::Area => Some(area),
-            Quantity::Penetration => Some(1e9 * of_row(&self.rms_height_m)?),
+            Quantity::Penetration => Some(length * of_row(&self.rms_height_m)?),
             Quantity::Load | Quantity::PullOff => Some(of_row(self.modulus_pa)? * area * kilo),
             Quantity::Loss => Some(of_row(self.modulus_pa)? * area * of_row(&self.rms_height_m)? * milli),
         }

@@ -1,6 +1,6 @@
 //! Rows of the table `cases`, with the labels and scales of the report.
 
-use super::layout::{Group, grouped, prose, wide};
+use super::layout::{Group, grouped, prose, unbroken, wide};
 use super::numbers::Scale;
 use crate::model::{Choice as _, Method};
 use crate::stats::{Listed, Listing, OfSweeps, StatsError, by_sweep, listing, loads};
@@ -93,7 +93,7 @@ impl<'a> Cases<'a> {
     pub(super) fn name(&self, listed: &Listed) -> Markup {
         let mut rows = self.sweeps.iter().flat_map(|of| &of.rows);
         let within = rows.find(|(row, _)| *row == listed.row).map(|(_, label)| label);
-        html! { td { (within.unwrap_or(&listed.label)) } td { (self.load(listed.row)) } }
+        html! { td { (unbroken(within.unwrap_or(&listed.label))) } td { (unbroken(self.load(listed.row))) } }
     }
 
     /// A wide table with a row for each row of the table `cases`, under the headings of their sweeps.

@@ -1,8 +1,8 @@
 //! Part of the report: measured loops and the simulated ones.
 
 use super::cases::Cases;
-use super::layout::{Numbers, grid, heading, prose, wide};
-use super::numbers::{Shown, shown};
+use super::layout::{Numbers, grid, heading, prose, unbroken, wide};
+use super::numbers::{Scale, scaled, with_half_width};
 use crate::figures::Panel;
 use crate::stats::StatsError;
 use crate::store::Frame;
@@ -56,33 +56,39 @@ pub(super) fn section(
     cases: &Cases<'_>,
     numbers: &Numbers<'_>,
 ) -> Result<Markup, StatsError> {
-    let head = html! {
-        th { "loop" } th { "kind" } @for (heading, ..) in COLUMNS { th { (prose(heading)) } }
-    };
     let sources = of.loops.text("source")?;
-    let mut rows = Vec::new();
-    for (row, source) in sources.iter().enumerate() {
-        let mut cells = Vec::new();
-        for (_, column) in COLUMNS {
-            let value = of.loops.f64_or_null(column)?.get(row).copied().flatten();
-            let limit = of.loops.f64_or_null(&format!("{column}_ci95_high"))?.get(row).copied().flatten();
-            let width = limit.zip(value).map(|(limit, value)| limit - value);
-            cells.push(html! {
-                (shown(value, Shown::Plain)) @if width.is_some() { " ± " (shown(width, Shown::Plain)) }
-            });
+    let mut rows = vec![Vec::new(); sources.len() + cases.rows().len()];
+    let mut scales = Vec::new();
+    for (_, column) in COLUMNS {
+        let measured = of.loops.f64_or_null(column)?;
+        let limits = of.loops.f64_or_null(&format!("{column}_ci95_high"))?;
+        let mut simulated = Vec::new();
+        for listed in cases.rows() {
+            simulated.push(mean(cases, listed.row, column)?);
         }
-        rows.push(html! { td { (source) } td { "measured" } @for cell in cells { td { (cell) } } });
+        let known: Vec<f64> = measured.iter().chain(&simulated).flatten().copied().collect();
+        let scale = Scale::of(&known);
+        let half = |row: usize| limits[row].zip(measured[row]).map(|(limit, value)| limit - value);
+        let values = (0..sources.len()).map(|row| with_half_width(measured[row], half(row), scale));
+        let values = values.chain(simulated.iter().map(|value| scaled(*value, scale)));
+        rows.iter_mut().zip(values).for_each(|(row, value)| row.push(value));
+        scales.push(scale);
     }
-    for listed in cases.rows() {
-        let mut cells = Vec::new();
-        for (_, column) in COLUMNS {
-            cells.push(shown(mean(cases, listed.row, column)?, Shown::Plain));
-        }
-        rows.push(html! {
-            td { (listed.label) ", " (prose(cases.load_symbol())) " = " (cases.load(listed.row)) }
-            td { "simulated" } @for cell in cells { td { (cell) } }
-        });
-    }
+    let head = html! {
+        th { "loop" }
+        th { "kind" }
+        @for ((heading, _), scale) in COLUMNS.iter().zip(&scales) { th { (prose(heading)) (scale.head()) } }
+    };
+    let measured = sources.iter().map(|source| html! { td { (source) } td { "measured" } });
+    let simulated = cases.rows().iter().map(|listed| {
+        let load = format!("{} = {}", cases.load_symbol(), cases.load(listed.row));
+        html! { td { (unbroken(&listed.label)) ", " (prose(&unbroken(&load))) } td { "simulated" } }
+    });
+    let rows: Vec<Markup> = measured
+        .chain(simulated)
+        .zip(rows)
+        .map(|(name, cells)| html! { (name) @for cell in cells { td { (cell) } } })
+        .collect();
     Ok(html! {
         (heading("Measured loops"))
         p { (prose(NOTE)) } "\n"

@@ -24,9 +24,9 @@ pub struct Grids {
 const NOTE: &str = "Estimated relative errors of results by boundary elements on the finest grid: contact \
     area A, pull-off force F_{po}, dissipated energy Θ and its parts of events on loading and unloading. \
     The errors follow from the means over surfaces that all grids have, after Roache (1994): with a factor \
-    of safety of 1.25 for three grids and 2 for two. An avalanche that happens on finer grids only, next to \
-    F_{max}, is not seen by it: compare several loads or surfaces. N: grid points per shortest wavelength, \
-    of all grids. Extrapolated Θ: value on an infinitely fine grid, where three grids have a regular series.";
+    of safety of 1.25 for three grids and 2 for two. They exclude an avalanche that happens next to F_{max} \
+    on finer grids only: compare several loads or surfaces. Points: per shortest wavelength, of all grids. \
+    Extrapolated Θ: value on an infinitely fine grid, where three grids have a regular series.";
 
 /// Columns of errors with their heads.
 const ERRORS: [(&str, &str); 5] = [
@@ -53,7 +53,7 @@ pub(super) fn section(
     }
     let head = html! {
         (cases.name_heads())
-        th { "N" } th { "surfaces" } th { "Θ" (cases.scale("loss")?.head()) }
+        th { "points" } th { "surfaces" } th { "Θ" (cases.scale("loss")?.head()) }
         @for (heading, _) in ERRORS { th { "error of " (prose(heading)) } }
         th { "extrapolated Θ" (cases.scale("loss")?.head()) }
     };
@@ -65,8 +65,14 @@ pub(super) fn section(
             @if !of.panels.is_empty() { (grid(numbers, &of.panels)) }
         }
         (failures(&of.failures))
-        @if let Some(help) = &help { p { (plain(help)) "." } "\n" }
+        @if let Some(help) = &help { p { (plain(&sentence(help))) } "\n" }
     }))
+}
+
+/// A hint as a sentence.
+fn sentence(hint: &str) -> String {
+    let mut letters = hint.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).chain(['.']).collect()
 }
 
 /// Failed cycles on coarser grids.

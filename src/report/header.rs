@@ -4,9 +4,11 @@ use super::layout::{plain, prose};
 use crate::model::{Choice as _, Method};
 use crate::schema::{Parameter, parameters_by_rank};
 use crate::stats::{
-    LIMITS, StatsError, Values, Varying, expected_ratios, loads, significant, verdicts_of_sweeps, warnings,
+    LIMITS, StatsError, Values, Varying, expected_ratios, grid_percent, loads, significant,
+    verdicts_of_sweeps, warnings, warnings_of,
 };
 use crate::store::{ColumnData, Frame};
+use crate::text::with_one_unit;
 use maud::{Markup, PreEscaped, html};
 
 /// Values of a parameter that the table lists; of more, it states the range.
@@ -24,7 +26,11 @@ pub(super) fn facts(cases: &Frame, seed: u64, realizations: &str) -> Result<Mark
     let mut facts = Vec::new();
     for parameter in parameters_by_rank() {
         // Values have their units.
-        let label = parameter.label.split_once(" [").map_or(parameter.label, |(label, _)| label);
+        let label = match parameter.label.split_once(" [") {
+            Some(("c", _)) => "machine compliance c",
+            Some((label, _)) => label,
+            None => parameter.label,
+        };
         facts.extend(values(cases, parameter)?.map(|values| (label.replace("^{*}", "*"), values)));
     }
     let loads = loads(cases)?;
@@ -46,7 +52,9 @@ pub(super) fn facts(cases: &Frame, seed: u64, realizations: &str) -> Result<Mark
 fn values(cases: &Frame, parameter: &'static Parameter) -> Result<Option<String>, StatsError> {
     let values = match cases.column(parameter.column.name)? {
         ColumnData::F64(all) => {
-            Values::Numbers(all.iter().filter(|value| value.is_some()).copied().collect())
+            let mut known: Vec<f64> = all.iter().flatten().copied().collect();
+            known.sort_by(f64::total_cmp);
+            Values::Numbers(known.into_iter().map(Some).collect())
         }
         ColumnData::Text(all) => {
             Values::Words(all.iter().flatten().filter(|word| !word.is_empty()).cloned().collect())
@@ -74,11 +82,14 @@ fn listed(texts: Vec<String>) -> String {
         [first, .., last] if different.len() > MOST_VALUES => {
             format!("{first} … {last} ({} values)", different.len())
         }
-        all => all.join(", "),
+        all => with_one_unit(&all.iter().map(String::as_str).collect::<Vec<_>>()),
     }
 }
 
-/// Verdict on model validity with the two deciding numbers.
+/// Grid error of Θ above which the banner is not green.
+const LARGE_GRID_ERROR: f64 = 0.1;
+
+/// Verdict on model validity: measured values beyond their limits, or the two deciding numbers.
 pub(super) fn banner(cases: &Frame, methods: &Frame) -> Result<Markup, StatsError> {
     let sentences = verdicts_of_sweeps(cases, Some(methods))?;
     let found = warnings(cases)?;
@@ -93,22 +104,26 @@ pub(super) fn banner(cases: &Frame, methods: &Frame) -> Result<Markup, StatsErro
     outside.retain(|row| judged.contains(row));
     outside.sort_unstable();
     outside.dedup();
+    let error = grid_error(cases)?;
     let (colour, verdict) = match (outside.len(), found.is_empty()) {
+        (0, true) if error.is_some_and(|error| error > LARGE_GRID_ERROR) => {
+            ("amber", "No warnings, but a large grid error.".to_owned())
+        }
         (0, true) if all == 0 => ("green", "No warnings.".to_owned()),
         (0, false) if all == 0 => ("amber", "With warnings.".to_owned()),
         (0, true) => ("green", "No warnings: all rows are inside the validated range.".to_owned()),
         (0, false) => ("amber", "Inside the validated range, with warnings.".to_owned()),
-        (count, _) if count == all => {
-            ("red", "All rows are outside the validated range of the asperity model.".to_owned())
-        }
         (count, _) => {
-            ("amber", format!("{count} of {all} rows are outside the validated range of the asperity model."))
+            let (colour, rows) = match (count, all) {
+                (1, 1) => ("red", "The result is".to_owned()),
+                _ if count == all => ("red", "All rows are".to_owned()),
+                (1, _) => ("amber", format!("1 of {all} rows is")),
+                _ => ("amber", format!("{count} of {all} rows are")),
+            };
+            (colour, format!("{rows} outside the validated range of the asperity model."))
         }
     };
-    let mut numbers = Vec::new();
-    for code in DECIDING {
-        numbers.extend(deciding(cases, &judged, code)?);
-    }
+    let numbers = numbers(cases, &judged, &outside)?;
     let labels: Vec<&str> = found.iter().map(|of| of.kind.label).collect();
     Ok(html! {
         div class={ "banner " (colour) } role="note" {
@@ -120,10 +135,32 @@ pub(super) fn banner(cases: &Frame, methods: &Frame) -> Result<Markup, StatsErro
             @if !labels.is_empty() {
                 p { "Warnings: " (labels.join(", ")) ". " a href="#model-validity" { "Model validity" } }
             }
+            @if let Some(error) = error {
+                p { "Grid error of Θ: " @if done.len() > 1 { "up to " } (grid_percent(error)) ". "
+                    a href="#grid-error" { "Grid error" } }
+            }
             @if let Some(ratios) = expected_ratios(cases)? { p { (plain(&ratios)) } }
         }
         "\n"
     })
+}
+
+/// Measured values of the rows outside the range, or of all judged ones.
+fn numbers(cases: &Frame, judged: &[usize], outside: &[usize]) -> Result<Vec<String>, StatsError> {
+    let mut numbers = Vec::new();
+    if outside.is_empty() {
+        for code in DECIDING {
+            numbers.extend(deciding(cases, judged, code)?);
+        }
+        return Ok(numbers);
+    }
+    let found = warnings_of(cases, outside)?;
+    Ok(found.into_iter().filter(|of| OF_RANGE.contains(&of.kind.code)).map(|of| of.measured).collect())
+}
+
+/// Largest known grid error of Θ.
+fn grid_error(cases: &Frame) -> Result<Option<f64>, StatsError> {
+    Ok(cases.f64_or_null("loss_grid_error")?.iter().flatten().copied().reduce(f64::max))
 }
 
 /// The range of the number that a warning compares with its limit, over these rows.

@@ -7,6 +7,9 @@ use std::cell::Cell;
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
+/// Letters of a part of a label on one line.
+const LONGEST_PART: usize = 18;
+
 /// Name of the metadata with the key of the report.
 const KEY: &str = "hysteron-key";
 
@@ -146,10 +149,33 @@ pub(super) fn prose(text: &str) -> Markup {
     }
 }
 
+/// Symbols of plain text with the markup of their subscripts.
+const SYMBOLS: [(&str, &str); 10] = [
+    ("F_po", "F_{po}"),
+    ("F_max", "F_{max}"),
+    ("h_rms", "h_{rms}"),
+    ("U_el", "U_{el}"),
+    ("λ_c", "λ_{c}"),
+    ("λ_r", "λ_{r}"),
+    ("Θ_DK", "Θ_{DK}"),
+    ("R_tip", "R_{tip}"),
+    ("A_0", "A_{0}"),
+    ("A₀", "A_{0}"),
+];
+
 /// Plain text with the subscripts of symbols.
 pub(super) fn plain(text: &str) -> Markup {
-    let symbols = [("F_po", "F_{po}"), ("F_max", "F_{max}"), ("h_rms", "h_{rms}"), ("U_el", "U_{el}")];
-    prose(&symbols.into_iter().fold(text.to_owned(), |text, (plain, marked)| text.replace(plain, marked)))
+    prose(&SYMBOLS.into_iter().fold(text.to_owned(), |text, (plain, marked)| text.replace(plain, marked)))
+}
+
+/// Spaces at which a line of a label must not break: inside a short part, else before the value of a part.
+pub(super) fn unbroken(label: &str) -> String {
+    let part = |part: &str| match part.rsplit_once("= ") {
+        _ if part.chars().count() <= LONGEST_PART => part.replace(' ', "\u{a0}"),
+        Some((name, value)) => format!("{name}=\u{a0}{}", value.replace(' ', "\u{a0}")),
+        None => part.to_owned(),
+    };
+    label.split(", ").map(part).collect::<Vec<_>>().join(", ")
 }
 
 /// Panels in a grid, each with number, caption and links to its files.
@@ -183,7 +209,8 @@ pub(super) fn switch(is_si: bool) -> Markup {
 
 fn numbered<'a>(numbers: &Numbers<'_>, number: usize, panels: impl IntoIterator<Item = &'a Panel>) -> Markup {
     let label = |name: &str| {
-        if name.chars().count() > 1 { format!(", {}", name.replace('_', " ")) } else { name.to_owned() }
+        let is_letter = name.starts_with(|c: char| c.is_ascii_uppercase());
+        if is_letter { name.to_owned() } else { format!(", {}", name.replace('_', " ")) }
     };
     html! {
         div.panels {

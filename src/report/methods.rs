@@ -1,7 +1,7 @@
 //! Part of the report: both methods on the same surfaces.
 
 use super::cases::Cases;
-use super::layout::{Numbers, figure, grid, heading, prose, wide};
+use super::layout::{Numbers, figure, grid, heading, prose, unbroken, wide};
 use super::numbers::{Scale, Shown, scaled, shown};
 use crate::figures::{Drawing, Panel};
 use crate::stats::{MethodPair, StatsError, labels, method_pairs, names_of_pairs};
@@ -72,13 +72,16 @@ fn head(scales: &[Scale]) -> Markup {
 
 fn row(pair: &MethodPair, [name, load]: [&str; 2], scales: &[Scale]) -> Markup {
     html! {
-        td { (name) }
+        td { (unbroken(name)) }
         td { (load) }
         td { (pair.count) }
         @for ([asperities, elements, ratio, sd], scale) in pair.quantities.into_iter().zip(scales) {
             td { (scaled(asperities, *scale)) }
             td { (scaled(elements, *scale)) }
-            td { (shown(ratio, Shown::Plain)) @if sd.is_some() { " ± " (shown(sd, Shown::Plain)) } }
+            td {
+                (shown(ratio, Shown::Plain))
+                @if sd.is_some() { " " small { "±\u{a0}" (shown(sd, Shown::Plain)) } }
+            }
         }
     }
 }

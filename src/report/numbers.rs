@@ -37,7 +37,7 @@ impl Scale {
 }
 
 /// Text with minus signs as wide as a digit.
-fn minus(text: &str) -> String {
+pub(super) fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
@@ -57,6 +57,16 @@ pub(super) fn scaled(number: Option<f64>, scale: Scale) -> Markup {
     let text = format!("{over:.places$}");
     let is_zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
     html! { (if is_zero { "0".to_owned() } else { minus(&text) }) }
+}
+
+/// A number over the scale of its column with the half-width of its interval: as many decimals as two digits
+/// of the half-width have.
+pub(super) fn with_half_width(number: Option<f64>, half: Option<f64>, scale: Scale) -> Markup {
+    let known = number.zip(half.filter(|half| half.is_finite() && *half > 0.0)).zip(scale.0);
+    let Some(((number, half), exponent)) = known else { return scaled(number, scale) };
+    let [number, half] = [number, half].map(|value| value / 10f64.powi(exponent));
+    let places = decimals(half, 2).min(5);
+    html! { (minus(&format!("{number:.places$}"))) " " small { "±\u{a0}" (format!("{half:.places$}")) } }
 }
 
 /// A number as two digits and a power of ten.

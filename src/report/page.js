@@ -30,20 +30,27 @@
     const bodies = Array.from(table.tBodies);
     const rows = (body) => Array.from(body.rows).filter((row) => !row.classList.contains("group"));
     heads.forEach((head, column) => {
-      const button = make("button", "", { type: "button", title: "Sort by this column" });
+      // A button element is not printed in the heads that later pages repeat.
+      const button = make("span", "", { role: "button", tabindex: "0", title: "Sort by this column" });
       button.append(...head.childNodes);
       head.append(button);
-      button.addEventListener("click", () => {
+      const sort = () => {
         const up = head.getAttribute("aria-sort") !== "ascending";
         heads.forEach((other) => other.removeAttribute("aria-sort"));
         head.setAttribute("aria-sort", up ? "ascending" : "descending");
         for (const body of bodies) body.append(...rows(body).sort(order(column, up ? 1 : -1)));
+      };
+      button.addEventListener("click", sort);
+      button.addEventListener("keydown", (event) => {
+        if (event.key !== "Enter" && event.key !== " ") return;
+        event.preventDefault();
+        sort();
       });
     });
     const tools = make("p", "", { class: "tools" });
     const csv = make("button", "Download CSV", { type: "button" });
     csv.addEventListener("click", () => {
-      const texts = (cells) => Array.from(cells, (of) => of.textContent.trim());
+      const texts = (cells) => Array.from(cells, (of) => of.textContent.replace(/\u00a0/g, " ").trim());
       const groups = bodies.some((body) => body.dataset.heading);
       const lines = [[...(groups ? ["sweep"] : []), ...texts(heads)]];
       for (const body of bodies) for (const row of rows(body)) lines.push([...(groups ? [body.dataset.heading] : []), ...texts(row.cells)]);

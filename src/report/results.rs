@@ -46,8 +46,7 @@ const OF_PROBE_NOTE: &str = "Apparent works of adhesion of a smooth sphere of th
 
 const IN_SI_NOTE: &str = "Per nominal area A_{0}. Work of adhesion of closing w_{closing}: energy that the \
     surfaces give from separation, by way of the load reversal, to zero load on the unloading path. Work of \
-    adhesion of opening w_{opening}: work from there to separation. w_{opening} − w_{closing} = Θ/A_{0}. \
-    Brackets and braces as above.";
+    adhesion of opening w_{opening}: work from there to separation. w_{opening} − w_{closing} = Θ/A_{0}.";
 
 /// Quantities compared with the reference case.
 const CHANGES: [(&str, &str); 5] = [
@@ -62,9 +61,10 @@ const CHANGES: [(&str, &str); 5] = [
 pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
     Ok(html! {
         (heading("Results"))
-        p { (note(cases.reference())) } "\n"
+        p { (note(cases)?) } "\n"
         div.dimensionless { (table(cases, "results", &without_units(cases)?)?) }
-        p { (prose(IN_SI_NOTE)) } "\n"
+        p { (prose(IN_SI_NOTE)) @if !spread(cases)?.is_empty() { " Confidence intervals and single values as \
+            above." } } "\n"
         (table(cases, "results-si", &IN_SI)?)
         @if cases.has_probe()? {
             p { (prose(OF_PROBE_NOTE)) } "\n"
@@ -76,11 +76,16 @@ pub(super) fn results(cases: &Cases<'_>) -> Result<Markup, StatsError> {
 /// Results without units: of probes alone with their own estimate of Deng and Kesari.
 fn without_units(cases: &Cases<'_>) -> Result<[Quantity; 7], StatsError> {
     let mut quantities = RESULTS;
-    if cases.frame.f64_or_null("probe_radius_m")?.iter().all(Option::is_some) {
+    if is_of_probes(cases)? {
         quantities[4] = ("Θ_{DK}, R_{tip} = R, target spectrum", "loss_dk_probe", true);
         quantities[6] = ("Θ_{DK}, R_{tip} = R, realised spectrum", "loss_dk_probe_realised", true);
     }
     Ok(quantities)
+}
+
+/// True if all cases have a probe.
+fn is_of_probes(cases: &Cases<'_>) -> Result<bool, StatsError> {
+    Ok(cases.frame.f64_or_null("probe_radius_m")?.iter().all(Option::is_some))
 }
 
 /// A table of results, one row for each case and load.
@@ -99,23 +104,37 @@ fn table(cases: &Cases<'_>, name: &str, quantities: &[Quantity]) -> Result<Marku
     Ok(cases.wide(name, &head, rows))
 }
 
-fn note(reference: Option<&str>) -> Markup {
+fn note(cases: &Cases<'_>) -> Result<Markup, StatsError> {
+    let tip = if is_of_probes(cases)? { ", R_{tip} = R" } else { "" };
     let text = format!(
         "Means over realizations: contact area A and mean penetration Δ at load reversal, pull-off force \
          F_{{po}} (maximum tensile load during unloading), dissipated energy Θ (area of the loop), and its \
-         estimate Θ_{{DK}} by Deng and Kesari (target spectrum; of a probe with R_{{tip}} = R). Brackets: \
-         95 % confidence interval of the mean (Student). A lower limit below 0 of a quantity that \
-         cannot be negative is replaced by 0 and marked with †. Braces: values of the single surfaces, \
-         for fewer than {FEW}. A power of ten in a \
-         column head is the unit of its numbers."
+         estimate Θ_{{DK}} by Deng and Kesari (target spectrum{tip}).{} A power of ten in a column head is \
+         the unit of its numbers.",
+        spread(cases)?
     );
-    html! {
+    Ok(html! {
         (prose(&text))
-        @if let Some(of) = reference {
+        @if let Some(of) = cases.reference() {
             " Reference case: " (of) ". It belongs to the most sweeps; the other cases are named by the \
                  parameters that differ from it."
         }
+    })
+}
+
+/// Meaning of the brackets and braces that the tables have.
+fn spread(cases: &Cases<'_>) -> Result<String, StatsError> {
+    let few = FEW as i64;
+    let done = cases.frame.i64("done_count")?;
+    let mut text = String::new();
+    if done.iter().any(|count| *count >= few) {
+        text += " Brackets: 95 % confidence interval of the mean (Student). A lower limit below 0 of a \
+                 quantity that cannot be negative is replaced by 0 and marked with †.";
     }
+    if done.iter().any(|count| (2..few).contains(count)) {
+        text += &format!(" Braces: values of the single surfaces, for fewer than {FEW}.");
+    }
+    Ok(text)
 }
 
 fn row(

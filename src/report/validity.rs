@@ -1,7 +1,7 @@
 //! Parts of the report: energy budget, model validity and warnings.
 
 use super::cases::Cases;
-use super::layout::{heading, plain, prose};
+use super::layout::{heading, plain, prose, unbroken};
 use super::numbers::{Shown, scaled, shown, with_aside};
 use crate::model::{Choice as _, Method};
 use crate::schema::EventKind;
@@ -185,7 +185,7 @@ fn warning_table(cases: &Cases<'_>) -> Result<Markup, StatsError> {
                     tr {
                         td { (kind.label) " (" (kind.code) ")" }
                         td { (plain(measured)) }
-                        td { (prose(kind.consequence)) " " (prose(kind.action)) }
+                        td { (plain(kind.consequence)) " " (plain(kind.action)) }
                         td { (places(cases, rows)) }
                     }
                     "\n"
@@ -215,7 +215,7 @@ fn places(cases: &Cases<'_>, rows: &[usize]) -> Markup {
     }
     let list = html! {
         @for (place, (label, loads)) in groups.iter().enumerate() {
-            @if place > 0 { br; } (label) " at " (loads.join(", "))
+            @if place > 0 { br; } (unbroken(label)) " at\u{a0}" (unbroken(&loads.join(", ")))
         }
     };
     html! {

@@ -2,7 +2,7 @@
 
 use super::cases::Cases;
 use super::layout::{Numbers, grid, heading, prose};
-use super::numbers::{Shown, shown};
+use super::numbers::{Scale, Shown, scaled, shown};
 use crate::figures::Panel;
 use crate::stats::{Listed, StatsError};
 use crate::store::Frame;
@@ -21,12 +21,15 @@ const NOTE: &str = "In mJ/m². Simulated: of closing and opening per nominal are
     works on approach and retraction. Models, for all roughness in full contact: U_{el}, elastic energy of \
     flattening; Persson–Tosatti, Δγ(1 + h′²/2) − U_{el} of both branches; Dalvi, closing by Δγ − U_{el} and \
     Θ = ΔγA; pinning, Δγ ∓ kU_{el} with k from 3 to 1.2 (closing) and 1.2 to 3 (opening). Models are empty \
-    for U_{el} ≥ Δγ, those of pinning for kU_{el} ≥ Δγ/2.";
+    for U_{el} ≥ Δγ, those of pinning for kU_{el} ≥ Δγ/2. A case without a model at any cut-off wavelength \
+    has no figure.";
 
-/// Heads of the columns after the case and its load.
-const HEADS: [&str; 9] = [
-    "closing or approach",
-    "opening or retraction",
+/// Heads of the columns of the simulated works: of flat surfaces, of probes, and of both.
+const SIMULATED: [[&str; 2]; 3] =
+    [["closing", "opening"], ["approach", "retraction"], ["closing or approach", "opening or retraction"]];
+
+/// Heads of the columns of models.
+const HEADS: [&str; 7] = [
     "Δγ",
     "U_{el}",
     "Persson–Tosatti",
@@ -38,13 +41,27 @@ const HEADS: [&str; 9] = [
 
 /// The works of each case next to those of models with all of its roughness, and the figures.
 pub(super) fn section(of: &Works, cases: &Cases<'_>, numbers: &Numbers<'_>) -> Result<Markup, StatsError> {
+    let mut known = Vec::new();
+    for listed in cases.rows() {
+        known.extend(simulated(cases.frame, listed.row)?.into_iter().flatten().map(|work| 1e3 * work));
+    }
+    let scale = Scale::of(&known);
+    let radii = cases.frame.f64_or_null("probe_radius_m")?;
+    let probes = radii.iter().flatten().count();
+    let simulated = match probes {
+        0 => SIMULATED[0],
+        _ if probes == radii.len() => SIMULATED[1],
+        _ => SIMULATED[2],
+    };
     let head = html! {
-        (cases.name_heads()) @for heading in HEADS { th { (prose(heading)) } }
+        (cases.name_heads())
+        @for heading in simulated { th { (heading) (scale.head()) } }
+        @for heading in HEADS { th { (prose(heading)) } }
     };
     let rows = cases
         .rows()
         .iter()
-        .map(|listed| Ok((listed.row, row(of, cases, listed)?)))
+        .map(|listed| Ok((listed.row, row(of, cases, listed, scale)?)))
         .collect::<Result<Vec<_>, StatsError>>()?;
     Ok(html! {
         (heading("Works of adhesion and the models"))
@@ -54,7 +71,7 @@ pub(super) fn section(of: &Works, cases: &Cases<'_>, numbers: &Numbers<'_>) -> R
     })
 }
 
-fn row(of: &Works, cases: &Cases<'_>, listed: &Listed) -> Result<Markup, StatsError> {
+fn row(of: &Works, cases: &Cases<'_>, listed: &Listed, scale: Scale) -> Result<Markup, StatsError> {
     let ids = of.cutoff.text("case_id")?;
     let id = cases.frame.text("case_id")?[listed.row];
     let last = ids.iter().rposition(|known| *known == id);
@@ -77,7 +94,7 @@ fn row(of: &Works, cases: &Cases<'_>, listed: &Listed) -> Result<Markup, StatsEr
     let dalvi = model("loss_dalvi_j_m2")?.zip(area).map(|(adhesion, area)| adhesion * area);
     Ok(html! {
         (cases.name(listed))
-        @for value in simulated { td { (milli(value)) } }
+        @for value in simulated { td { (scaled(value.map(|value| 1e3 * value), scale)) } }
         td { (milli(model("work_of_adhesion_j_m2")?)) }
         td { (milli(model("flattening_j_m2")?)) }
         td { (milli(model("work_persson_tosatti_j_m2")?)) }

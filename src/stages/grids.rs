@@ -2,6 +2,7 @@
 
 use super::StageError;
 use super::cycle_input::cycle_input;
+use super::works::named;
 use crate::campaign::{Campaign, CycleUnit};
 use crate::figures::{OfGrids, over_grids};
 use crate::physics::theory::grid_convergence::grid_error;
@@ -52,7 +53,7 @@ pub(super) fn grids(
             continue;
         }
         let symbol = loads.symbol.replace(['{', '}'], "");
-        let label = format!("{}, {symbol} = {}", listed.label, labels[row]);
+        let label = format!("{}, {symbol} = {}", named(&listed.label), labels[row]);
         let of = OfGrids { case_id: ids[row], max_load: max_loads[row], label: &label };
         panels.extend(over_grids(&table, &of, panels.len() + 1)?);
     }

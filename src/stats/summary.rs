@@ -390,12 +390,15 @@ fn few_warnings(cases: &Frame) -> Result<Vec<String>, StatsError> {
         std::iter::once(String::new()).chain(other.iter().take(FEW - 1).map(line)).collect();
     let left: Vec<&str> =
         other.iter().skip(FEW - 1).chain(&covered).map(|warning| warning.kind.code).collect();
-    let last = |more: String| format!("{more}consequences and actions: report.html, or --verbose");
-    let named = last(format!("Also {}; ", left.join(", ")));
+    let last = |more: &str| {
+        let first = if more.is_empty() { "C" } else { "c" };
+        format!("{more}{first}onsequences and actions: report.html, or --verbose")
+    };
+    let named = last(&format!("Also {}; ", left.join(", ")));
     lines.push(match left.len() {
-        0 => last(String::new()),
+        0 => last(""),
         _ if named.chars().count() <= LINE => named,
-        count => last(format!("{}, ", counted(count, "more warning"))),
+        count => last(&format!("{}, ", counted(count, "more warning"))),
     });
     Ok(lines)
 }

@@ -164,7 +164,7 @@ fn avalanche(bench: &Bench, page: &str, of: &Loop) {
     let hidden: usize = driven.split("<title>hidden ").nth(1).unwrap().split('<').next().unwrap().parse().unwrap();
     assert!(hidden >= 4, "{hidden} curves are hidden");
     // A table is sorted by a click on the head of a column.
-    let sort = "const button = document.querySelectorAll('[data-name=results] th button')[5]; button.click(); button.click(); \
+    let sort = "const button = document.querySelectorAll('[data-name=results] th [role=button]')[5]; button.click(); button.click(); \
                 document.title = 'sorted ' + [...document.querySelectorAll('[data-name=results] tbody tr')].map(row => row.cells[5].textContent.split(' ')[0]).join(' ');";
     let driven = after(page, bench.folder.path(), sort).unwrap();
     let sorted: Vec<f64> =

@@ -233,8 +233,10 @@ fn e2e_two_parameters_are_axis_and_colour() {
     assert_eq!(paths(&drawn[3].1, None), 2);
     assert_eq!((paths(&drawn[0].1, Some("7 4")), paths(&drawn[0].1, None)), (2, 2), "two series at the largest load");
     assert!(read(&drawn[0].1).contains("H = 0.45") && read(&drawn[2].1).contains("H = 0.8"));
-    assert!(drawn[3].1.contains("for H = 0.45, 0.6, 0.8; ζ = 64, 128"));
     let panels = panels_of(&made, "grid").unwrap();
+    // The caption of a panel of one value has the cases of this value alone.
+    assert!(panels[3].caption.contains("against Hurst exponent H, for H = 0.45, 0.6, 0.8; ζ = 64, 128"), "{}", panels[3].caption);
+    assert!(panels[2].caption.contains("for H = 0.8; ζ = 64, 128; mean"), "{}", panels[2].caption);
     assert_eq!(panels[0].cases.iter().map(|(label, _)| label.as_str()).collect::<Vec<_>>(), ["ζ = 64", "ζ = 128"]);
     // A colour is one series in every panel.
     for panel in &panels {
@@ -242,6 +244,23 @@ fn e2e_two_parameters_are_axis_and_colour() {
             assert!(panel.cases.iter().any(|(label, colour)| *colour == curve.colour && curve.of.contains(label.as_str())), "{}", curve.of);
         }
     }
+}
+
+/// A case without a result has neither a place on the axis nor a colour.
+#[test]
+fn e2e_failed_cases_leave_no_empty_axis() {
+    let result = (0.1, 5e-4, 5e-4, 2.0);
+    let inputs: Vec<_> = [0.6, 0.7, 0.8].map(|hurst| (case(&hurst.to_string(), "h", hurst, 64.0, &[0.004]), result)).into();
+    let all = tables(&inputs, 2);
+    let finished = tables(&inputs[..2], 2);
+    // The third case is planned and has no cycle.
+    let planned: Vec<CaseInput> = inputs.iter().map(|(input, _)| input.clone()).collect();
+    let mut made = finished.clone();
+    made.0 = cases(&made.2, &planned).unwrap();
+    let [drawn, wanted] = [&made, &finished].map(|tables| panels_of(tables, "h").unwrap());
+    assert_eq!(drawn[1].plot.x, wanted[1].plot.x);
+    assert_eq!(drawn[1].cases, wanted[1].cases);
+    assert_ne!(panels_of(&all, "h").unwrap()[1].plot.x, wanted[1].plot.x);
 }
 
 /// Many curves have no bands, a scale of colours, and labels inside the picture; at most six values of the axis have a panel of paths.

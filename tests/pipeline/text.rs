@@ -1,10 +1,18 @@
 //! Texts for people and for shells.
 
-use hysteron::text::{counted, markdown, paragraph, printable, shell_quote, visible};
+use hysteron::text::{counted, markdown, paragraph, printable, shell_quote, visible, with_one_unit};
 
 #[test]
 fn val_counts_have_their_plural() {
     assert_eq!([0, 1, 2].map(|count| counted(count, "task")), ["0 tasks", "1 task", "2 tasks"]);
+}
+
+#[test]
+fn val_a_common_unit_follows_the_last_value() {
+    assert_eq!(with_one_unit(&["0.01 J/m²", "0.02 J/m²"]), "0.01, 0.02 J/m²");
+    assert_eq!(with_one_unit(&["1 mm", "2 µm"]), "1 mm, 2 µm");
+    assert_eq!(with_one_unit(&["8", "16"]), "8, 16");
+    assert_eq!(with_one_unit(&["1 MPa"]), "1 MPa");
 }
 
 #[test]

@@ -152,7 +152,7 @@ fn val_corrected_scans_have_the_area_and_pull_off_force_of_the_clean_one() {
         assert!(text.contains("[outliers]") && text.contains("[lines]"), "{text}");
     }
     assert!(plan.contains("--align-rows"), "{plan}");
-    assert!(page.contains("outliers of the scan (outliers)") && page.contains("line offsets removed / left [m]"));
+    assert!(page.contains("outliers of the scan (outliers)") && page.contains("line offsets removed / left"));
     let (plan, said, mended, _) = run("outliers = true\nalign_rows = true\n");
     for text in [&plan, &said] {
         assert!(!text.contains("[outliers]") && !text.contains("[lines]"), "{text}");
