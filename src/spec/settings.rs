@@ -8,6 +8,7 @@ use super::entries::entries;
 use super::fault::{Faults, OPTION, in_setting};
 use super::keys::{TABLES, find};
 use super::origin::Origin;
+use super::realizations::{DEFAULT, Realizations};
 use super::sweep::SweepDraft;
 use super::walk::{Draft, enter};
 use super::{SpecErrors, coarser};
@@ -76,6 +77,13 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
         draft.coarser.clear();
         coarser::clear_others(place, &coarser::CHOICES, &mut draft.base, &mut draft.origins);
     }
+    // A setting of a whole table replaces it, and one of a key in it that key alone.
+    match path {
+        "figures" => (draft.figures, draft.across) = Default::default(),
+        "realizations" => draft.realizations = Realizations::Exactly(DEFAULT),
+        "experiment" => draft.experiment = None,
+        _ => {}
+    }
     for (key, span, written) in entries(root.get_ref()) {
         if matches!(key, "sweep" | "files" | "auto_methods" | "scan_sides_m")
             || TABLES.contains(&key) && !path.contains('.')
@@ -95,13 +103,8 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
         }
         enter((key, span, written), draft, faults);
     }
-    if path == "realizations" {
-        draft.realizations_at = draft.realizations_at.take().map(|at| in_setting(number, &at));
-    }
+    move_places(number, path, draft);
     let Some(place) = place else { return };
-    if let Origin::Written(at) = &mut draft.origins[place] {
-        *at = in_setting(number, at);
-    }
     // Other values may lead to another choice.
     draft.auto_methods.clear();
     if path.starts_with("surface.") || path.starts_with("cycle.") {
@@ -121,5 +124,22 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
             format!("every sweep of the spec sets `{path}`: {OPTION} has no effect"),
             "change the sweeps of the spec".to_owned(),
         );
+    }
+}
+
+/// Places of what a setting has written: they are in the setting, and not in the spec.
+fn move_places(number: usize, path: &str, draft: &mut Draft) {
+    let moved = |at: &mut Range<usize>| *at = in_setting(number, at);
+    if path == "realizations" || path.starts_with("realizations.") {
+        draft.realizations_at.iter_mut().for_each(moved);
+    }
+    if ["figures", "figures.across"].contains(&path) {
+        draft.across.places().for_each(moved);
+    }
+    if coarser::LISTS.contains(&path) {
+        draft.coarser.iter_mut().map(|(_, at)| at).for_each(moved);
+    }
+    if let Some(Origin::Written(at)) = coarser::place(path).map(|place| &mut draft.origins[place]) {
+        moved(at);
     }
 }

@@ -140,6 +140,14 @@ fn val_choices_of_a_grid_exclude_one_another() {
     }
 }
 
+/// An error of 0 is none: the grid is the automatic one, whatever the maximum is.
+#[test]
+fn reg_an_error_of_zero_requires_nothing() {
+    let [zero, none] = ["boundary_elements.error = 0\nboundary_elements.max_points = 16\n", ""].map(|lines| read(&spec(lines)));
+    assert_eq!(zero.cases, none.cases);
+    assert_eq!(keys(zero), keys(none));
+}
+
 /// Each case has the grids that its error requires, and the results are those of the same list written by hand.
 #[test]
 fn e2e_grids_are_refined_until_the_error_is_reached() {
@@ -200,6 +208,9 @@ fn e2e_an_error_that_is_not_reached_is_a_warning() {
     assert!(status.contains("on 64 points a side, above the requested 0.5 %") && status.contains("Nothing is left to do."), "{status}");
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
     assert!(page.contains("grid error too large") && page.contains("above the requested"), "page");
+    // Another required error changes the warnings, and `plan` gives it as the reason.
+    let plan = stdout(&bench.verb("plan", &["--set", "boundary_elements.error=0.01", "--set", "boundary_elements.max_points=64"]));
+    assert!(plan.contains("statistics is stale: boundary_elements.error was changed\n"), "{plan}");
     // Further grids begin from the finished ones.
     let run = bench.verb("run", &["--set", "boundary_elements.max_points=128"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
