@@ -14,6 +14,10 @@ use super::walk::{Draft, enter};
 use super::{SpecErrors, coarser};
 use crate::text::quoted;
 
+/// Settings that name files.
+const NAME_FILES: [&str; 5] =
+    ["surface.file", "surface.files", "surface.spectrum", "experiment", "experiment.loops"];
+
 /// Puts the settings into a draft, in their order, and gives them as TOML.
 pub(super) fn apply(settings: &[String], draft: &mut Draft) -> Result<Vec<String>, SpecErrors> {
     for (number, setting) in settings.iter().enumerate() {
@@ -104,15 +108,15 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
         enter((key, span, written), draft, faults);
     }
     move_places(number, path, draft);
+    // The hashes are of the files that the spec names.
+    if NAME_FILES.contains(&path) {
+        draft.files.clear();
+    }
     let Some(place) = place else { return };
     // Other values may lead to another choice.
     draft.auto_methods.clear();
     if path.starts_with("surface.") || path.starts_with("cycle.") {
         draft.scan_sides_m.clear();
-    }
-    // The hashes are of the files that the spec names.
-    if ["surface.file", "surface.files"].contains(&path) {
-        draft.files.clear();
     }
     let has_axis = |sweep: &Option<SweepDraft>| {
         sweep.as_ref().is_some_and(|sweep| sweep.axes.iter().any(|axis| axis.key == place))

@@ -83,7 +83,8 @@ pub fn grid_help(cases: &Frame, rows: &[usize]) -> Result<Option<String>, StatsE
         |points| {
             let has_coarser = resolution[first].is_none_or(|found| found >= 2.0 * FEWEST_PER_WAVELENGTH);
             let finest = if has_coarser { points } else { 2.0 * points };
-            format!("points = [{}, {finest}]", (finest / 2.0).round())
+            // Grids with mirror images have even numbers of points.
+            format!("points = [{}, {finest}]", 2.0 * (finest / 4.0).round())
         },
     );
     Ok(is_unknown.then(|| format!("grid error unknown; boundary_elements.{list} estimates it")))

@@ -217,6 +217,27 @@ fn e2e_an_error_that_is_not_reached_is_a_warning() {
     assert!(stdout(&run).contains("cycle     2 of 8 computed, 6 done before"), "{}", stdout(&run));
 }
 
+/// Files with changed bytes stop no command: a run computes them again, and its grids and tables are the same.
+#[test]
+fn e2e_damaged_tables_of_a_refined_run_are_repaired() {
+    let text = spec("boundary_elements.error = 0.2\nboundary_elements.max_points = 64").replace("[2, 4]", "4");
+    let bench = Bench::new(&text);
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let (whole, cases) = (refined(&bench), rows(&statistics(&bench, &schema::CASES)));
+    for place in [whole.cycle_dir(&whole.cycles[0]).join("steps.parquet"), whole.estimates_path(&whole.surfaces[0])] {
+        Bench::damage(&place);
+        for look in ["status", "verify"] {
+            let said = bench.look(look, &[]);
+            assert_eq!(code(&said), 0, "{look}: {}", stderr(&said));
+        }
+        assert_eq!(code(&bench.look("verify", &["--deep"])), 1);
+        let run = bench.verb("run", &[]);
+        assert_eq!(code(&run), 0, "{}", stderr(&run));
+        assert_eq!((grids(&refined(&bench), 4), rows(&statistics(&bench, &schema::CASES))), (grids(&whole, 4), cases.clone()));
+        assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
+    }
+}
+
 /// Surfaces after surfaces, and the cycles of each grid in a run of its own, end as one run does.
 #[test]
 fn e2e_refinement_is_resumed_from_any_state() {

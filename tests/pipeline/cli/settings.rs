@@ -108,3 +108,18 @@ fn reg_faults_of_lists_in_a_setting_name_the_option() {
         assert!(said.contains(message) && said.contains(place), "{setting}: {said}");
     }
 }
+
+/// Checksums of a resolved spec are those of its files: a setting that names others leaves them out.
+#[test]
+fn reg_a_setting_of_files_replaces_their_checksums() {
+    let digest = "0".repeat(64);
+    for (lines, file, setting) in [
+        ("surface = { file = \"a.h5\", periodic = true }", "a.h5", "surface.file=b.h5"),
+        ("[experiment]\nloops = [\"a.csv\"]", "a.csv", "experiment.loops=[\"b.csv\"]"),
+        ("[experiment]\nloops = [\"a.csv\"]", "a.csv", "experiment={ loops = [\"b.csv\"] }"),
+    ] {
+        let text = format!("name = \"x\"\n{lines}\n[files]\n\"{file}\" = \"{digest}\"\n");
+        assert_eq!(with(&text, &[]).unwrap().files.len(), 1);
+        assert!(with(&text, &[setting]).unwrap_or_else(|said| panic!("{said}")).files.is_empty(), "{setting}");
+    }
+}
