@@ -80,6 +80,17 @@ pub(super) fn standings_by(campaign: &Campaign, check: Check) -> Vec<Standing> {
     standings
 }
 
+/// Unfinished cycles, if grids or realizations follow from their results; 0 otherwise.
+#[must_use]
+pub fn undecided(campaign: &Campaign, check: Check) -> usize {
+    let spec = &campaign.spec;
+    if spec.base.goal.error.is_none() && spec.realizations.until().is_none() {
+        return 0;
+    }
+    let is_open = |standing: &&Standing| !matches!(standing, Standing::Done | Standing::Failed(_));
+    standings_by(campaign, check).iter().filter(is_open).count()
+}
+
 fn sampled_by(campaign: Campaign, check: Check) -> Result<Campaign, StageError> {
     let mut campaign = refined(campaign, check)?;
     let Some(until) = campaign.spec.realizations.until() else { return Ok(campaign) };

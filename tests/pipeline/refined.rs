@@ -231,11 +231,20 @@ fn e2e_damaged_tables_of_a_refined_run_are_repaired() {
             assert_eq!(code(&said), 0, "{look}: {}", stderr(&said));
         }
         assert_eq!(code(&bench.look("verify", &["--deep"])), 1);
+        // The finer grids are not known, and none is deleted.
+        let clean = bench.look("clean", &["--delete"]);
+        assert!(code(&clean) == 1 && stderr(&clean).contains("pending, and grids or surfaces follow"), "{}", stderr(&clean));
         let run = bench.verb("run", &[]);
         assert_eq!(code(&run), 0, "{}", stderr(&run));
         assert_eq!((grids(&refined(&bench), 4), rows(&statistics(&bench, &schema::CASES))), (grids(&whole, 4), cases.clone()));
         assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
+        assert!(stdout(&bench.look("clean", &["--delete"])).contains("Nothing is left over"));
     }
+    // A lost receipt of a coarser grid.
+    fs::remove_file(bench.out().join(format!("receipts/cycle/{}.json", whole.cycles[whole.cycles.len() - 1].id))).unwrap();
+    let listed = stdout(&bench.look("clean", &[]));
+    assert!(listed.contains("warning: ") && listed.contains("may be in use"), "{listed}");
+    assert_eq!(code(&bench.look("clean", &["--delete"])), 1);
 }
 
 /// Surfaces after surfaces, and the cycles of each grid in a run of its own, end as one run does.
