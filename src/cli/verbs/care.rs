@@ -172,7 +172,9 @@ pub(super) fn gc(asked: &FolderArguments, keep: &[PathBuf], delete: bool) -> Res
             format!("{count} left over, {}; nothing was deleted. Delete with --delete.\n", HumanBytes(bytes))
         }
     })?;
-    let warning = unknown.map(|why| wrapped(&format!("warning: {why}: some of them may be in use"), "  "));
+    let warning = unknown
+        .filter(|_| !leftovers.is_empty())
+        .map(|why| wrapped(&format!("warning: {why}: some of them may be in use"), "  "));
     say(&warning.unwrap_or_default())?;
     Ok(0)
 }
