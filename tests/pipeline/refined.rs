@@ -220,7 +220,7 @@ fn e2e_an_error_that_is_not_reached_is_a_warning() {
 /// Files with changed bytes stop no command: a run computes them again, and its grids and tables are the same.
 #[test]
 fn e2e_damaged_tables_of_a_refined_run_are_repaired() {
-    let text = spec("boundary_elements.error = 0.2\nboundary_elements.max_points = 64").replace("[2, 4]", "4");
+    let text = spec("boundary_elements.error = 0.005\nboundary_elements.max_points = 128").replace("[2, 4]", "4");
     let bench = Bench::new(&text);
     assert_eq!(code(&bench.verb("run", &[])), 0);
     let (whole, cases) = (refined(&bench), rows(&statistics(&bench, &schema::CASES)));
