@@ -139,21 +139,26 @@ impl Campaign {
                     "finished, lost or failed since",
                 ));
             }
+            let named = [
+                ("grid_error", "boundary_elements.error was changed"),
+                ("loops", "[experiment] or a measured loop was changed"),
+            ];
+            changes.extend(differing(&named, |name| read(&then, name) != read(&now, name)));
         } else {
             let named =
                 [("statistics", "the tables over realizations are stale"), ("spec", "the spec was edited")];
-            changes.extend(
-                named
-                    .iter()
-                    .filter(|(name, _)| read(&then, name) != read(&now, name))
-                    .map(|(_, text)| (*text).to_owned()),
-            );
+            changes.extend(differing(&named, |name| read(&then, name) != read(&now, name)));
         }
         if read(&then, "name") != read(&now, "name") {
             changes.push("the name of the run was changed".to_owned());
         }
         (!changes.is_empty()).then(|| changes.join(", "))
     }
+}
+
+/// Texts on the named inputs that differ.
+fn differing(named: &[(&str, &str)], differs: impl Fn(&str) -> bool) -> Vec<String> {
+    named.iter().filter(|(name, _)| differs(name)).map(|(_, text)| (*text).to_owned()).collect()
 }
 
 /// Changes from one list of entries `[id, …]` to another.

@@ -15,7 +15,7 @@ const EVENT: &[Column] = &[
     STEP,
     index("avalanche_id", "Number of the avalanche in the table events of the cycle"),
     text("kind", KINDS_DOC),
-    text("cause", "Kind of the event that causes the relaxation, as in the table events of the cycle"),
+    text("cause", "Kind of the event that causes the relaxation, in the words of kind"),
     ASPERITY_OR_REGION,
     real("approach_m", "m", "Mean penetration Δ at the event, with the zero of the table steps"),
     real("load_before_n", "N", "Normal load before the event, summed over all contact spots"),

@@ -33,11 +33,17 @@ pub(super) const CHOICES: [&str; 3] = [LISTS[0], LISTS[1], ERROR];
 /// The key of a required grid error.
 pub(super) const ERROR: &str = "boundary_elements.error";
 
+/// The keys that hold for all cases.
+pub(super) const FOR_ALL: [&str; 2] = [ERROR, "boundary_elements.max_points"];
+
 /// Points per shortest wavelength of the first grids for a required grid error.
 const FIRST: [u32; 3] = [4, 8, 16];
 
 /// Smallest grid error that can be required: that of the estimate.
 const SMALLEST: f64 = 0.005;
+
+/// Fewest points per shortest wavelength.
+const FEWEST: u32 = FIRST[0];
 
 /// Largest number of grids in a list.
 pub(super) const MOST: usize = 6;
@@ -100,6 +106,10 @@ pub(super) fn grids(key: &Key, list: &Written<'_>, faults: &mut Faults<'_>) -> O
             faults.add(&element.span(), message, example(key));
             None
         }
+        Value::Count(few) if few < fewest(key) => {
+            too_few(&element.span(), few, faults);
+            None
+        }
         Value::Count(points) => Some((points, element.span())),
         _ => None,
     };
@@ -120,6 +130,11 @@ pub(super) fn grids(key: &Key, list: &Written<'_>, faults: &mut Faults<'_>) -> O
     }
     let (finest, _) = grids.pop()?;
     Some((Value::Count(finest), grids))
+}
+
+/// Smallest number in a list of grids of a key.
+pub(super) fn fewest(key: &Key) -> u32 {
+    if key.path == LISTS[1] { FEWEST } else { 1 }
 }
 
 fn example(key: &Key) -> String {
@@ -149,7 +164,7 @@ pub(super) fn clear_others(chosen: usize, others: &[&str], values: &mut Values, 
 
 /// Refuses a key of a sweep that holds for all cases; true if it is one.
 pub(super) fn refuses_sweep(key: &Key, at: &Range<usize>, faults: &mut Faults<'_>) -> bool {
-    let refuses = [ERROR, "boundary_elements.max_points"].contains(&key.path);
+    let refuses = FOR_ALL.contains(&key.path);
     if refuses {
         let message = format!("`{}` cannot be swept: it holds for all cases", key.path);
         faults.add(at, message, "move it out of the [[sweep]]".to_owned());
@@ -164,14 +179,19 @@ pub(super) fn check_choice(values: &Values, origins: &[Origin], faults: &mut Fau
         exclude(pair, "each of them chooses the grids: give one", origins, faults);
     }
     let at = |path: &str| written(place(path), origins);
-    if let (Some(few @ 1..=3), Some(span)) = (values.elements.per_wavelength, at(number)) {
-        let message = format!("`{number}` is {few}: at least 4 are needed");
-        faults.add(&span, message, "4 resolve the waves, 8 and more the events".to_owned());
+    if let (Some(few @ 1..FEWEST), Some(span)) = (values.elements.per_wavelength, at(number)) {
+        too_few(&span, few, faults);
     }
     if let (Some(small), Some(span)) = (values.goal.error.filter(|of| *of < SMALLEST), at(ERROR)) {
         let message = format!("`{ERROR}` is {}: the smallest estimate is {SMALLEST}", short(small));
         faults.add(&span, message, "write a larger error, such as 0.05 for 5 %".to_owned());
     }
+}
+
+/// Refuses a number of points per shortest wavelength below [`FEWEST`].
+fn too_few(at: &Range<usize>, few: u32, faults: &mut Faults<'_>) {
+    let message = format!("`{}` is {few}: at least {FEWEST} are needed", LISTS[1]);
+    faults.add(at, message, format!("{FEWEST} resolve the waves, 8 and more the events"));
 }
 
 /// Sets the finest of the first grids of a case for a required grid error, and gives the coarser ones: those
@@ -180,8 +200,8 @@ pub(super) fn first_grids(values: &mut Values, origins: &[Origin], faults: &mut 
     let (Some(span), Method::BoundaryElements) = (written(place(ERROR), origins), values.method) else {
         return Vec::new();
     };
-    // Refused by the check of the choice.
-    if LISTS.iter().any(|path| written(place(path), origins).is_some()) {
+    // Refused by the check of the choice. An error of 0 is none.
+    if values.goal.error.is_none() || LISTS.iter().any(|path| written(place(path), origins).is_some()) {
         return Vec::new();
     }
     let points = |number: u32, values: &mut Values| {

@@ -90,34 +90,43 @@ pub(super) const STIFFNESS: Limits = Limits {
 pub(super) const WORDS: [(&str, super::keys::Words); 2] =
     [("compression", Compression::MEANINGS), ("baseline", Baseline::MEANINGS)];
 
-/// The table of a spec.
-pub(super) fn experiment(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Experiment> {
+/// The table of a spec. Keys that it lacks keep their values before.
+pub(super) fn experiment(
+    value: &Written<'_>,
+    known: Option<Experiment>,
+    faults: &mut Faults<'_>,
+) -> Option<Experiment> {
     let DeValue::Table(table) = value.get_ref() else {
         let help = "write [experiment] on a line of its own, and loops = [\"loop.csv\"] below it".to_owned();
         wrong_type("experiment", "a table", value.get_ref(), &value.span(), help, faults);
         return None;
     };
     let before = faults.count();
-    let mut read = Experiment::default();
-    let LoopOptions { force, force_unit, displacement, displacement_unit, radius, radius_unit, .. } =
-        &mut read.options;
-    let mut numbers = [None; 3];
-    let mut words = [None; 2];
+    let mut read = known.unwrap_or_default();
+    let options = &mut read.options;
     for (name, span, written) in entries(table) {
         let path = format!("experiment.{name}");
         match name {
             "loops" => read.loops = loops(written, faults).unwrap_or_default(),
-            "force" => *force = text(&path, written, faults),
-            "force_unit" => *force_unit = text(&path, written, faults),
-            "displacement" => *displacement = text(&path, written, faults),
-            "displacement_unit" => *displacement_unit = text(&path, written, faults),
-            "radius" => *radius = text(&path, written, faults),
-            "radius_unit" => *radius_unit = text(&path, written, faults),
-            "compression" => words[0] = word(&path, &listed(Compression::MEANINGS), written, faults),
-            "baseline" => words[1] = word(&path, &listed(Baseline::MEANINGS), written, faults),
-            "probe_radius_m" => numbers[0] = number(&path, &RADIUS, written, faults),
-            "contact_modulus_pa" => numbers[1] = number(&path, &MODULUS, written, faults),
-            "machine_stiffness_n_m" => numbers[2] = number(&path, &STIFFNESS, written, faults),
+            "force" => options.force = text(&path, written, faults),
+            "force_unit" => options.force_unit = text(&path, written, faults),
+            "displacement" => options.displacement = text(&path, written, faults),
+            "displacement_unit" => options.displacement_unit = text(&path, written, faults),
+            "radius" => options.radius = text(&path, written, faults),
+            "radius_unit" => options.radius_unit = text(&path, written, faults),
+            "compression" => {
+                let found = word(&path, &listed(Compression::MEANINGS), written, faults);
+                options.compression = found.and_then(Compression::from_word).unwrap_or(options.compression);
+            }
+            "baseline" => {
+                let found = word(&path, &listed(Baseline::MEANINGS), written, faults);
+                options.baseline = found.and_then(Baseline::from_word).unwrap_or(options.baseline);
+            }
+            "probe_radius_m" => options.probe_radius_m = number(&path, &RADIUS, written, faults),
+            "contact_modulus_pa" => options.contact_modulus_pa = number(&path, &MODULUS, written, faults),
+            "machine_stiffness_n_m" => {
+                options.machine_stiffness_n_m = number(&path, &STIFFNESS, written, faults);
+            }
             unknown => {
                 let elsewhere = |other: &str| format!("`{unknown}` belongs in [{other}]");
                 let help = lost(unknown, &KEYS, elsewhere, "keys of [experiment]");
@@ -125,10 +134,6 @@ pub(super) fn experiment(value: &Written<'_>, faults: &mut Faults<'_>) -> Option
             }
         }
     }
-    read.options.compression = words[0].and_then(Compression::from_word).unwrap_or(Compression::Auto);
-    read.options.baseline = words[1].and_then(Baseline::from_word).unwrap_or(Baseline::Line);
-    let [probe_radius_m, contact_modulus_pa, machine_stiffness_n_m] = numbers;
-    read.options = LoopOptions { probe_radius_m, contact_modulus_pa, machine_stiffness_n_m, ..read.options };
     if read.loops.is_empty() && faults.count() == before {
         let help = "add a line such as loops = [\"loop.csv\"], or remove [experiment]".to_owned();
         faults.add(&value.span(), "[experiment] names no file".to_owned(), help);

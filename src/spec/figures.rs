@@ -30,6 +30,9 @@ pub(super) const LONGEST_FONT: usize = 64;
 /// Keys of the table.
 const TAKES: [&str; 5] = ["format", "width_mm", "font", "loads", "across"];
 
+/// Key of groups of sweeps.
+const PATH: &str = "figures.across";
+
 /// Loads of the panels of a sweep.
 pub(super) const LOADS: [&str; 2] = ["largest", "all"];
 
@@ -125,24 +128,40 @@ pub(super) fn arrays(groups: &[Vec<impl AsRef<str>>]) -> String {
     }
 }
 
-/// Names of sweeps in `across`, and their places in the text.
-pub(super) type Across = Vec<(String, Range<usize>)>;
+/// Groups of sweeps in `across`, and their places in the text.
+#[derive(Clone, Default)]
+pub(super) struct Across {
+    /// Names of sweeps in all groups.
+    names: Vec<(String, Range<usize>)>,
+    /// Names of the figures of each group.
+    stems: Vec<(String, Range<usize>)>,
+}
 
-/// The table of a spec, with the names of sweeps in it.
-pub(super) fn figures(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<(Figures, Across)> {
+impl Across {
+    /// All places in the text.
+    pub(super) fn places(&mut self) -> impl Iterator<Item = &mut Range<usize>> {
+        self.names.iter_mut().chain(&mut self.stems).map(|(_, at)| at)
+    }
+}
+
+/// The table of a spec, with the names of sweeps in it. Keys that it lacks keep their values before.
+pub(super) fn figures(
+    value: &Written<'_>,
+    (mut read, mut names): (Figures, Across),
+    faults: &mut Faults<'_>,
+) -> Option<(Figures, Across)> {
     let DeValue::Table(table) = value.get_ref() else {
         let help = "write { format = [\"svg\", \"pdf\"], width_mm = 88 }".to_owned();
         wrong_type("figures", "a table", value.get_ref(), &value.span(), help, faults);
         return None;
     };
-    let (mut read, mut names) = (Figures::default(), Across::new());
     for (name, span, written) in entries(table) {
         match name {
             "format" => read.format = formats(written, faults)?,
             "width_mm" => read.width_mm = number("figures.width_mm", &WIDTH, written, faults)?,
             "font" => read.font = font(written, faults)?,
             "loads" => read.loads = word("figures.loads", &LOADS, written, faults)?,
-            "across" => read.across = across(written, &mut names, faults)?,
+            "across" => (read.across, names) = across(written, faults)?,
             unknown => {
                 let listed = format!("keys of `figures`: {}", TAKES.join(", "));
                 let help = nearest(unknown, TAKES)
@@ -156,12 +175,11 @@ pub(super) fn figures(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<(F
 }
 
 /// Groups of at least two sweeps: one array of names, or an array of such arrays.
-fn across(value: &Written<'_>, names: &mut Across, faults: &mut Faults<'_>) -> Option<Vec<Vec<String>>> {
-    const PATH: &str = "figures.across";
+fn across(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<(Vec<Vec<String>>, Across)> {
     let elements = array(PATH, "names of sweeps", value, faults)?;
     let is_nested = elements.first().is_some_and(|first| first.get_ref().is_array());
     let groups: Vec<&Written<'_>> = if is_nested { elements.iter().collect() } else { vec![value] };
-    let mut found = Vec::new();
+    let (mut found, mut places) = (Vec::<Vec<String>>::new(), Across::default());
     for group in groups {
         let mut of_group: Vec<String> = Vec::new();
         for element in array(PATH, "names of sweeps", group, faults)? {
@@ -171,7 +189,7 @@ fn across(value: &Written<'_>, names: &mut Across, faults: &mut Faults<'_>) -> O
                 faults.add(&element.span(), message, "name each sweep once".to_owned());
                 return None;
             }
-            names.push((name.clone(), element.span()));
+            places.names.push((name.clone(), element.span()));
             of_group.push(name);
         }
         if of_group.len() < 2 {
@@ -179,22 +197,39 @@ fn across(value: &Written<'_>, names: &mut Across, faults: &mut Faults<'_>) -> O
             faults.add(&group.span(), message, "each sweep has figures of its own already".to_owned());
             return None;
         }
+        let is_same = |other: &Vec<String>| {
+            other.len() == of_group.len() && of_group.iter().all(|name| other.contains(name))
+        };
+        if found.iter().any(is_same) {
+            let message = format!("`{PATH}` has the sweeps {} twice", of_group.join(", "));
+            faults.add(&group.span(), message, "name each group once".to_owned());
+            return None;
+        }
+        places.stems.push((of_group.join("-"), group.span()));
         found.push(of_group);
     }
-    Some(found)
+    Some((found, places))
 }
 
-/// Adds a fault for each name in `across` that no sweep has.
+/// Adds a fault for each name in `across` that no sweep has, and for figures of two names in one file.
 pub(super) fn check_across(across: &Across, sweeps: &[&SweepDraft], faults: &mut Faults<'_>) {
     let sweeps: Vec<&str> = sweeps.iter().map(|sweep| sweep.name.as_str()).collect();
-    for (name, at) in across.iter().filter(|(name, _)| !sweeps.contains(&name.as_str())) {
+    let groups = across.stems.iter().enumerate();
+    for (place, (stem, at)) in groups {
+        let is_known = |(other, _): &(String, Range<usize>)| other == stem;
+        if sweeps.contains(&stem.as_str()) || across.stems[..place].iter().any(is_known) {
+            let message = format!("figures of `{PATH}` have the names of others: {stem}_A");
+            faults.add(at, message, "rename one of the sweeps".to_owned());
+        }
+    }
+    for (name, at) in across.names.iter().filter(|(name, _)| !sweeps.contains(&name.as_str())) {
         let listed = format!("sweeps of the spec: {}", sweeps.join(", "));
         let help = match nearest(name, sweeps.iter().copied()) {
             _ if sweeps.is_empty() => "the spec has no sweeps: remove the key".to_owned(),
             Some(near) => format!("did you mean \"{near}\"? {listed}"),
             None => listed,
         };
-        faults.add(at, format!("unknown sweep \"{name}\" in `figures.across`"), help);
+        faults.add(at, format!("unknown sweep \"{name}\" in `{PATH}`"), help);
     }
 }
 

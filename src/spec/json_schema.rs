@@ -130,7 +130,7 @@ fn outside(of: &Key) -> Value {
     if !coarser::LISTS.contains(&of.path) {
         return key(of);
     }
-    let grid = json!({ "type": "integer", "minimum": 1, "maximum": high });
+    let grid = json!({ "type": "integer", "minimum": coarser::fewest(of), "maximum": high });
     let list = json!({
         "type": "array", "items": grid, "minItems": 1, "maxItems": coarser::MOST, "uniqueItems": true,
     });

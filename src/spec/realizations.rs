@@ -108,10 +108,15 @@ pub(super) const PRECISION: Limits = Limits {
          standard deviation of 25 %",
 };
 
-/// A number of realizations, or a table that says until when.
-pub(super) fn realizations(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Realizations> {
+/// A number of realizations, or a table that says until when. Keys that the table lacks keep their values
+/// before.
+pub(super) fn realizations(
+    value: &Written<'_>,
+    before: Realizations,
+    faults: &mut Faults<'_>,
+) -> Option<Realizations> {
     match value.get_ref() {
-        DeValue::Table(_) => until(value, faults).map(Realizations::Until),
+        DeValue::Table(_) => until(value, before.until(), faults).map(Realizations::Until),
         DeValue::Integer(_) => count("realizations", 1, value, faults).map(Realizations::Exactly),
         other => {
             let help = "write a number, or { until_relative_ci = 0.05, of = \"loss\" }".to_owned();
@@ -136,10 +141,12 @@ fn count(path: &str, least: u32, value: &Written<'_>, faults: &mut Faults<'_>) -
     count
 }
 
-fn until(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Until> {
+fn until(value: &Written<'_>, known: Option<Until>, faults: &mut Faults<'_>) -> Option<Until> {
     let DeValue::Table(table) = value.get_ref() else { return None };
     let before = faults.count();
-    let (mut precision, mut of, (mut min, mut max)) = (None, Goal::Loss, DEFAULT_BOUNDS);
+    let mut precision = known.map(|known| known.until_relative_ci);
+    let mut of = known.map_or(Goal::Loss, |known| known.of);
+    let (mut min, mut max) = known.map_or(DEFAULT_BOUNDS, |known| (known.min, known.max));
     let mut limits = value.span();
     for (name, span, written) in entries(table) {
         match name {
@@ -163,7 +170,7 @@ fn until(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<Until> {
             }
         }
     }
-    if !table.contains_key("until_relative_ci") {
+    if known.is_none() && !table.contains_key("until_relative_ci") {
         let help = "add until_relative_ci = 0.05, or write the number of realizations alone".to_owned();
         faults.add(&value.span(), "`realizations` has no `until_relative_ci`".to_owned(), help);
     }

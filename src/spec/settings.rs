@@ -8,10 +8,15 @@ use super::entries::entries;
 use super::fault::{Faults, OPTION, in_setting};
 use super::keys::{TABLES, find};
 use super::origin::Origin;
+use super::realizations::{DEFAULT, Realizations};
 use super::sweep::SweepDraft;
 use super::walk::{Draft, enter};
 use super::{SpecErrors, coarser};
 use crate::text::quoted;
+
+/// Settings that name files.
+const NAME_FILES: [&str; 5] =
+    ["surface.file", "surface.files", "surface.spectrum", "experiment", "experiment.loops"];
 
 /// Puts the settings into a draft, in their order, and gives them as TOML.
 pub(super) fn apply(settings: &[String], draft: &mut Draft) -> Result<Vec<String>, SpecErrors> {
@@ -76,6 +81,13 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
         draft.coarser.clear();
         coarser::clear_others(place, &coarser::CHOICES, &mut draft.base, &mut draft.origins);
     }
+    // A setting of a whole table replaces it, and one of a key in it that key alone.
+    match path {
+        "figures" => (draft.figures, draft.across) = Default::default(),
+        "realizations" => draft.realizations = Realizations::Exactly(DEFAULT),
+        "experiment" => draft.experiment = None,
+        _ => {}
+    }
     for (key, span, written) in entries(root.get_ref()) {
         if matches!(key, "sweep" | "files" | "auto_methods" | "scan_sides_m")
             || TABLES.contains(&key) && !path.contains('.')
@@ -95,21 +107,16 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
         }
         enter((key, span, written), draft, faults);
     }
-    if path == "realizations" {
-        draft.realizations_at = draft.realizations_at.take().map(|at| in_setting(number, &at));
+    move_places(number, path, draft);
+    // The hashes are of the files that the spec names.
+    if NAME_FILES.contains(&path) {
+        draft.files.clear();
     }
     let Some(place) = place else { return };
-    if let Origin::Written(at) = &mut draft.origins[place] {
-        *at = in_setting(number, at);
-    }
     // Other values may lead to another choice.
     draft.auto_methods.clear();
     if path.starts_with("surface.") || path.starts_with("cycle.") {
         draft.scan_sides_m.clear();
-    }
-    // The hashes are of the files that the spec names.
-    if ["surface.file", "surface.files"].contains(&path) {
-        draft.files.clear();
     }
     let has_axis = |sweep: &Option<SweepDraft>| {
         sweep.as_ref().is_some_and(|sweep| sweep.axes.iter().any(|axis| axis.key == place))
@@ -121,5 +128,22 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
             format!("every sweep of the spec sets `{path}`: {OPTION} has no effect"),
             "change the sweeps of the spec".to_owned(),
         );
+    }
+}
+
+/// Places of what a setting has written: they are in the setting, and not in the spec.
+fn move_places(number: usize, path: &str, draft: &mut Draft) {
+    let moved = |at: &mut Range<usize>| *at = in_setting(number, at);
+    if path == "realizations" || path.starts_with("realizations.") {
+        draft.realizations_at.iter_mut().for_each(moved);
+    }
+    if ["figures", "figures.across"].contains(&path) {
+        draft.across.places().for_each(moved);
+    }
+    if coarser::LISTS.contains(&path) {
+        draft.coarser.iter_mut().map(|(_, at)| at).for_each(moved);
+    }
+    if let Some(Origin::Written(at)) = coarser::place(path).map(|place| &mut draft.origins[place]) {
+        moved(at);
     }
 }

@@ -91,7 +91,7 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
         seed: top::DEFAULT_SEED,
         realizations: Realizations::Exactly(DEFAULT),
         figures: Figures::default(),
-        across: Across::new(),
+        across: Across::default(),
         realizations_at: None,
         experiment: None,
         base: Values::default(),
@@ -127,10 +127,14 @@ pub(super) fn enter((key, span, written): Entry<'_, '_>, draft: &mut Draft, faul
         "seed" => draft.seed = top::seed(written, faults).unwrap_or(draft.seed),
         "realizations" => {
             draft.realizations_at = Some(written.span());
-            draft.realizations = realizations(written, faults).unwrap_or(draft.realizations);
+            draft.realizations =
+                realizations(written, draft.realizations, faults).unwrap_or(draft.realizations);
         }
-        "figures" => (draft.figures, draft.across) = figures(written, faults).unwrap_or_default(),
-        "experiment" => draft.experiment = experiment(written, faults),
+        "figures" => {
+            let before = (draft.figures.clone(), draft.across.clone());
+            (draft.figures, draft.across) = figures(written, before, faults).unwrap_or_default();
+        }
+        "experiment" => draft.experiment = experiment(written, draft.experiment.take(), faults),
         "auto_methods" => {
             draft.auto_at = Some(written.span());
             draft.auto_methods = auto::methods(written, faults);
@@ -170,6 +174,7 @@ fn base(
             let message = format!("`{}` must be a single value here, not an array", key.path);
             let help = match key.path {
                 "surface.file" => "write surface.files for several scans of one sample, or use a [[sweep]]",
+                path if coarser::FOR_ALL.contains(&path) => "write one number: it holds for all cases",
                 _ => "move the array to a [[sweep]]",
             };
             faults.add(&written.span(), message, help.to_owned());

@@ -101,17 +101,22 @@ pub(super) fn together(
 ) -> Vec<Vec<usize>> {
     let place = |key: usize| axes.iter().position(|axis| axis.key == key);
     for group in groups {
-        let mut of_group = group.iter().filter_map(|(key, at)| Some((&axes[place(*key)?], at)));
-        let Some((first, _)) = of_group.next() else { continue };
-        let wanted = first.values.len();
-        for (axis, at) in of_group.filter(|(axis, _)| axis.values.len() != wanted) {
+        let of_group = group.iter().filter_map(|(key, at)| Some((&axes[place(*key)?], at)));
+        // The first one with most values is complete.
+        let count = |axis: &AxisDraft| axis.values.len();
+        let longest = of_group.clone().map(|(axis, _)| axis).rev().max_by_key(|axis| count(axis));
+        let Some(first) = longest else { continue };
+        let wanted = count(first);
+        for (axis, at) in of_group.filter(|(axis, _)| count(axis) != wanted) {
             let (path, count) = (KEYS[axis.key].path, axis.values.len());
             let message = format!(
                 "`{path}` has {}, `{}` has {wanted}: keys of one `zip` need equally many",
                 crate::text::counted(count, "value"),
                 KEYS[first.key].path
             );
-            let help = if count == 1 {
+            let help = if count == 1 && KEYS[axis.key].kind.is_list() {
+                format!("write an array of arrays, one for each case: {path} = [[…], […]]")
+            } else if count == 1 {
                 format!("remove `{path}` from `zip`: a single value holds for all cases")
             } else {
                 "complete the shorter array, or remove the key from `zip`: arrays then multiply".to_owned()

@@ -60,7 +60,7 @@ pub use measured_loop::{MeasuredLoop, half_width, measure_loop};
 pub use outside::in_words;
 pub use pipeline::{prepare, run};
 pub use refining::{AboveError, above_error};
-pub use sampling::sampled;
+pub use sampling::{sampled, undecided};
 pub use scan_spectra::{Sample, SampleScan, csv as psd_csv, scans_table};
 pub use task::{Tally, Task, Watch};
 pub use verdict::{Verdict, chosen_method};

@@ -8,6 +8,7 @@ use super::aggregate::case_input;
 use super::cycle::lattice;
 use super::cycle_input::cycle_input;
 use super::grids::grid_rule;
+use super::sampling::{by_sizes_first, standings_by};
 use super::surface_row::SurfaceRow;
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, Standing};
 use crate::spec::{CaseParams, MOST_PER_WAVELENGTH};
@@ -30,12 +31,12 @@ pub struct AboveError {
 
 /// The campaign with the grids that its required grid error needs, as far as known: up to the first
 /// unfinished cycles of each case.
-pub(super) fn refined(campaign: Campaign) -> Result<Campaign, StageError> {
+pub(super) fn refined(campaign: Campaign, check: Check) -> Result<Campaign, StageError> {
     let Some(wanted) = campaign.spec.base.goal.error else { return Ok(campaign) };
     let mut campaign = campaign;
     loop {
         let mut places = Vec::new();
-        for (place, error) in known_errors(&campaign)? {
+        for (place, error) in known_errors(&campaign, check)? {
             if error.is_some_and(|error| error > wanted) && has_finer_grid(&campaign, place)? {
                 places.push(place);
             }
@@ -66,13 +67,14 @@ pub fn above_error(campaign: &Campaign) -> Result<Vec<AboveError>, StageError> {
         let above = AboveError { case_id: unit.id.clone(), grid, error };
         Some(above).filter(|_| error.is_none_or(|error| error > wanted))
     };
-    Ok(known_errors(campaign)?.into_iter().filter_map(of).collect())
+    let known = by_sizes_first(|check| known_errors(campaign, check))?;
+    Ok(known.into_iter().filter_map(of).collect())
 }
 
 /// Cases by boundary elements whose cycles are finished on all grids, by their places, with the largest
 /// estimated grid error of their mean dissipated energies; nothing where it is unknown.
-fn known_errors(campaign: &Campaign) -> Result<Vec<(usize, Option<f64>)>, StageError> {
-    let standings = campaign.cycle_standings(Check::Sizes);
+fn known_errors(campaign: &Campaign, check: Check) -> Result<Vec<(usize, Option<f64>)>, StageError> {
+    let standings = standings_by(campaign, check);
     let is_open =
         |(_, standing): &(&CycleUnit, &Standing)| !matches!(standing, Standing::Done | Standing::Failed(_));
     let open: HashSet<usize> =

@@ -7,7 +7,7 @@
 use super::StageError;
 use super::grids::cycle_results;
 use super::refining::refined;
-use crate::campaign::{Campaign, CycleUnit, Standing};
+use crate::campaign::{Campaign, CycleUnit, Standing, SurfaceUnit};
 use crate::model::Choice;
 use crate::spec::Until;
 use crate::stats::{Sample, Value};
@@ -49,15 +49,53 @@ fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
 }
 
 /// The campaign with the grids and the number of realizations of each case that its precision requires, as
-/// far as known: up to the first unfinished ones.
+/// far as known: up to the first unfinished ones. A cycle with a damaged file is unfinished.
 ///
 /// # Errors
 /// If the tables of a finished cycle cannot be read.
 pub fn sampled(campaign: Campaign) -> Result<Campaign, StageError> {
-    let mut campaign = refined(campaign)?;
+    by_sizes_first(|check| sampled_by(campaign.clone(), check))
+}
+
+/// A result of finished cycles by the sizes of their files, and by their contents if a file cannot be read.
+pub(super) fn by_sizes_first<T>(of: impl Fn(Check) -> Result<T, StageError>) -> Result<T, StageError> {
+    of(Check::Sizes).or_else(|_| of(Check::Contents))
+}
+
+/// Status of all cycles. With the check of contents, those of damaged surfaces are not finished.
+pub(super) fn standings_by(campaign: &Campaign, check: Check) -> Vec<Standing> {
+    let mut standings = campaign.cycle_standings(check);
+    if check == Check::Contents {
+        let is_whole = |unit: &SurfaceUnit| {
+            [unit.surface(), unit.asperities()]
+                .iter()
+                .all(|of| campaign.standing(of, check) == Standing::Done)
+        };
+        let whole: Vec<bool> = campaign.surfaces.par_iter().map(is_whole).collect();
+        let done = campaign.cycles.iter().zip(&mut standings).filter(|(_, of)| **of == Standing::Done);
+        for (_, standing) in done.filter(|(unit, _)| !whole[unit.surface]) {
+            *standing = Standing::Planned;
+        }
+    }
+    standings
+}
+
+/// Unfinished cycles, if grids or realizations follow from their results; 0 otherwise.
+#[must_use]
+pub fn undecided(campaign: &Campaign, check: Check) -> usize {
+    let spec = &campaign.spec;
+    if spec.base.goal.error.is_none() && spec.realizations.until().is_none() {
+        return 0;
+    }
+    let is_open = |standing: &&Standing| !matches!(standing, Standing::Done | Standing::Failed(_));
+    standings_by(campaign, check).iter().filter(is_open).count()
+}
+
+fn sampled_by(campaign: Campaign, check: Check) -> Result<Campaign, StageError> {
+    let mut campaign = refined(campaign, check)?;
     let Some(until) = campaign.spec.realizations.until() else { return Ok(campaign) };
     loop {
-        let standings = campaign.cycle_standings(Check::Sizes);
+        let standings = standings_by(&campaign, check);
         let counts: Vec<u32> = (0..campaign.cases.len())
             .into_par_iter()
             .map(|case| count(&campaign, case, &standings, &until))

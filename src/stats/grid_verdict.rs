@@ -13,6 +13,9 @@ const MOST: usize = 8;
 const WORDS: [&str; 11] =
     ["two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
 
+/// Fewest grid points per shortest wavelength of a grid.
+const FEWEST_PER_WAVELENGTH: f64 = 4.0;
+
 /// Columns of the table `cases` that the sentences name.
 struct Columns<'a> {
     means: &'a [Option<f64>],
@@ -71,14 +74,20 @@ pub fn grid_verdict(cases: &Frame, row: usize) -> Result<Option<String>, StatsEr
 /// If the table lacks a column.
 pub fn grid_help(cases: &Frame, rows: &[usize]) -> Result<Option<String>, StatsError> {
     let (columns, points) = (Columns::of(cases)?, cases.f64_or_null("element_points")?);
+    let resolution = cases.f64_or_null("elements_per_wavelength_min")?;
     let mut by_elements = rows.iter().copied().filter(|row| columns.mean(*row).is_some());
     let Some(first) = by_elements.clone().next() else { return Ok(None) };
-    let finest = points[first].unwrap_or(128.0);
     let is_unknown = by_elements.all(|row| columns.grid[row].is_none());
-    Ok(is_unknown.then(|| {
-        let coarser = (finest / 2.0).round();
-        format!("grid error unknown; boundary_elements.points = [{coarser}, {finest}] estimates it")
-    }))
+    let list = points[first].map_or_else(
+        || "points_per_wavelength = [8, 16]".to_owned(),
+        |points| {
+            let has_coarser = resolution[first].is_none_or(|found| found >= 2.0 * FEWEST_PER_WAVELENGTH);
+            let finest = if has_coarser { points } else { 2.0 * points };
+            // Grids with mirror images have even numbers of points.
+            format!("points = [{}, {finest}]", 2.0 * (finest / 4.0).round())
+        },
+    );
+    Ok(is_unknown.then(|| format!("grid error unknown; boundary_elements.{list} estimates it")))
 }
 
 /// Sentences on the listed rows, each with its case and load, and the rest of them as a number.

@@ -59,6 +59,14 @@ impl Bench {
         output(Command::new(env!("CARGO_BIN_EXE_hysteron")).arg(verb).arg(self.out()).args(more))
     }
 
+    /// Changes the end of a Parquet file, so that it cannot be read and has its length.
+    pub fn damage(path: &Path) {
+        let mut bytes = fs::read(path).unwrap();
+        let end = bytes.len() - 4;
+        bytes[end..].fill(0);
+        fs::write(path, bytes).unwrap();
+    }
+
     /// Receipts by path, with their bytes.
     pub fn receipts(&self) -> BTreeMap<PathBuf, Vec<u8>> {
         let folder = self.out().join("receipts");

@@ -145,6 +145,9 @@ fn e2e_without_coarser_grids_the_error_is_unknown() {
     let (bench, said) = finished(&spec);
     assert_eq!(said.matches("help: grid error unknown; boundary_elements.points = [16, 32] estimates it").count(), 1, "{said}");
     assert_eq!(statistics(&bench, &schema::GRIDS).row_count(), 0);
+    // A coarser grid of 8 points would have fewer than 4 on the shortest wavelength.
+    let (_, said) = finished(&spec.replace("points = 32", "points = 16"));
+    assert!(said.contains("help: grid error unknown; boundary_elements.points = [16, 32] estimates it"), "{said}");
     // Of asperities nothing is said.
     let (_, said) = finished(&spec.replace("\"boundary_elements\"", "\"asperities\""));
     assert!(!said.contains("grid error"), "{said}");

@@ -168,7 +168,7 @@ fn e2e_several_loops_are_imported_at_once() {
         (&["bad.csv", "bad.csv"][..], "two loops"),
         (&["a.csv", "more/a.csv"], "has the name of an earlier file"),
         (&["a.csv", "scan.txt"], "scan.txt has no force and displacement"),
-        (&["scan.txt", "bad.csv", "--loop"], "no loop of 2 files was read"),
+        (&["scan.txt", "bad.csv", "--loop"], "none of 2 loops was imported"),
     ] {
         let output = hysteron(folder.path(), &[&["import"], files].concat());
         assert!(code(&output) == 1 && stderr(&output).contains(words) && stderr(&output).contains("\nhelp: "), "{}", stderr(&output));

@@ -140,6 +140,14 @@ fn val_choices_of_a_grid_exclude_one_another() {
     }
 }
 
+/// An error of 0 is none: the grid is the automatic one, whatever the maximum is.
+#[test]
+fn reg_an_error_of_zero_requires_nothing() {
+    let [zero, none] = ["boundary_elements.error = 0\nboundary_elements.max_points = 16\n", ""].map(|lines| read(&spec(lines)));
+    assert_eq!(zero.cases, none.cases);
+    assert_eq!(keys(zero), keys(none));
+}
+
 /// Each case has the grids that its error requires, and the results are those of the same list written by hand.
 #[test]
 fn e2e_grids_are_refined_until_the_error_is_reached() {
@@ -200,10 +208,43 @@ fn e2e_an_error_that_is_not_reached_is_a_warning() {
     assert!(status.contains("on 64 points a side, above the requested 0.5 %") && status.contains("Nothing is left to do."), "{status}");
     let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
     assert!(page.contains("grid error too large") && page.contains("above the requested"), "page");
+    // Another required error changes the warnings, and `plan` gives it as the reason.
+    let plan = stdout(&bench.verb("plan", &["--set", "boundary_elements.error=0.01", "--set", "boundary_elements.max_points=64"]));
+    assert!(plan.contains("statistics is stale: boundary_elements.error was changed\n"), "{plan}");
     // Further grids begin from the finished ones.
     let run = bench.verb("run", &["--set", "boundary_elements.max_points=128"]);
     assert_eq!(code(&run), 0, "{}", stderr(&run));
     assert!(stdout(&run).contains("cycle     2 of 8 computed, 6 done before"), "{}", stdout(&run));
+}
+
+/// Files with changed bytes stop no command: a run computes them again, and its grids and tables are the same.
+#[test]
+fn e2e_damaged_tables_of_a_refined_run_are_repaired() {
+    let text = spec("boundary_elements.error = 0.005\nboundary_elements.max_points = 128").replace("[2, 4]", "4");
+    let bench = Bench::new(&text);
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let (whole, cases) = (refined(&bench), rows(&statistics(&bench, &schema::CASES)));
+    for place in [whole.cycle_dir(&whole.cycles[0]).join("steps.parquet"), whole.estimates_path(&whole.surfaces[0])] {
+        Bench::damage(&place);
+        for look in ["status", "verify"] {
+            let said = bench.look(look, &[]);
+            assert_eq!(code(&said), 0, "{look}: {}", stderr(&said));
+        }
+        assert_eq!(code(&bench.look("verify", &["--deep"])), 1);
+        // The finer grids are not known, and none is deleted.
+        let clean = bench.look("clean", &["--delete"]);
+        assert!(code(&clean) == 1 && stderr(&clean).contains("pending, and grids or surfaces follow"), "{}", stderr(&clean));
+        let run = bench.verb("run", &[]);
+        assert_eq!(code(&run), 0, "{}", stderr(&run));
+        assert_eq!((grids(&refined(&bench), 4), rows(&statistics(&bench, &schema::CASES))), (grids(&whole, 4), cases.clone()));
+        assert_eq!(code(&bench.look("verify", &["--deep"])), 0);
+        assert!(stdout(&bench.look("clean", &["--delete"])).contains("Nothing is left over"));
+    }
+    // A lost receipt of a coarser grid.
+    fs::remove_file(bench.out().join(format!("receipts/cycle/{}.json", whole.cycles[whole.cycles.len() - 1].id))).unwrap();
+    let listed = stdout(&bench.look("clean", &[]));
+    assert!(listed.contains("warning: ") && listed.contains("may be in use"), "{listed}");
+    assert_eq!(code(&bench.look("clean", &["--delete"])), 1);
 }
 
 /// Surfaces after surfaces, and the cycles of each grid in a run of its own, end as one run does.

@@ -186,6 +186,11 @@ fn e2e_plan_states_the_errors_of_the_run() {
         assert!(code(&run) != 0 && flat(&said).contains(&flat(problem)), "{problem}\n{said}");
         fs::remove_dir_all(bench.out()).unwrap();
     }
+    // Coarser grids are counted apart from the cases.
+    let list = "method = \"boundary_elements\"\n[boundary_elements]\npoints = [32, 128]\n";
+    fs::write(bench.spec(), of_scan("scan.txt", "1e6", list)).unwrap();
+    let said = plan(&bench).0;
+    assert!(said.contains("warning: the run would fail for 1 of 1 coarser grid: "), "{said}");
 }
 
 /// A generated surface of four wavelengths with a method and works of adhesion.

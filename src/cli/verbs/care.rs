@@ -4,8 +4,9 @@ use super::place::{folder, open, open_dir};
 use super::{FAILED, Fault, failed, say};
 use crate::campaign::{Campaign, Explanation, Leftover};
 use crate::cli::{FolderArguments, OutputArguments};
+use crate::stages::undecided;
 use crate::store::Check;
-use crate::text::{counted, shell_path, shown, visible};
+use crate::text::{counted, shell_path, shown, visible, wrapped};
 use indicatif::HumanBytes;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -133,6 +134,11 @@ pub(super) fn gc(asked: &FolderArguments, keep: &[PathBuf], delete: bool) -> Res
     }
     let others =
         keep.iter().map(|spec| open(spec, &output(&dir))).collect::<Result<Vec<Campaign>, Fault>>()?;
+    let unknown = unknown_files(&campaign, &others, delete);
+    if let Some(why) = unknown.as_ref().filter(|_| delete) {
+        let help = "finish the runs of the folder, and of --keep, with `hysteron run`";
+        return Err(failed(format!("cannot clean {}: {why}\nhelp: {help}", shown(&dir))));
+    }
     let leftovers = campaign.leftovers(&others);
     let bytes: u64 = leftovers.iter().map(|left| left.size_bytes).sum();
     let name =
@@ -166,5 +172,20 @@ pub(super) fn gc(asked: &FolderArguments, keep: &[PathBuf], delete: bool) -> Res
             format!("{count} left over, {}; nothing was deleted. Delete with --delete.\n", HumanBytes(bytes))
         }
     })?;
+    let warning = unknown
+        .filter(|_| !leftovers.is_empty())
+        .map(|why| wrapped(&format!("warning: {why}: some of them may be in use"), "  "));
+    say(&warning.unwrap_or_default())?;
     Ok(0)
+}
+
+/// Why the files of some specs are not known yet; nothing if they are. Contents are compared before files are
+/// deleted.
+fn unknown_files(campaign: &Campaign, others: &[Campaign], delete: bool) -> Option<String> {
+    let check = if delete { Check::Contents } else { Check::Sizes };
+    let open =
+        others.iter().chain([campaign]).map(|of| undecided(of, check)).max().filter(|open| *open > 0)?;
+    let are = if open == 1 { "is" } else { "are" };
+    let cycles = counted(open, "cycle");
+    Some(format!("{cycles} {are} pending, and grids or surfaces follow from the results"))
 }

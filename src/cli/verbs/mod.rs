@@ -168,6 +168,10 @@ fn say(text: &str) -> Result<bool, Fault> {
 }
 
 fn make_folder(folder: &Path) -> Result<(), Fault> {
+    if folder.is_file() {
+        let help = "name a folder, or remove the file";
+        return Err(failed(format!("cannot make the folder {}: it is a file\nhelp: {help}", shown(folder))));
+    }
     std::fs::create_dir_all(folder)
         .map_err(|error| failed(format!("cannot make the folder {}: {error}", shown(folder))))
 }

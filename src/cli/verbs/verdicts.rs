@@ -131,18 +131,22 @@ fn costs(verdicts: &[Verdict]) -> String {
 
 /// Errors by which the run would fail, each with the number of its cases.
 fn errors(verdicts: &[Verdict]) -> String {
-    let mut known: Vec<(&str, usize)> = Vec::new();
-    for error in verdicts.iter().filter_map(|of| of.error.as_deref()) {
-        match known.iter_mut().find(|(text, _)| *text == error) {
+    let mut known: Vec<((&str, bool), usize)> = Vec::new();
+    for (error, is_coarser) in
+        verdicts.iter().filter_map(|of| Some((of.error.as_deref()?, of.is_coarser_grid)))
+    {
+        match known.iter_mut().find(|(of, _)| *of == (error, is_coarser)) {
             Some((_, count)) => *count += 1,
-            None => known.push((error, 1)),
+            None => known.push(((error, is_coarser), 1)),
         }
     }
-    let text = |(error, count): &(&str, usize)| {
+    let text = |((error, is_coarser), count): &((&str, bool), usize)| {
         let (problem, help) = error.split_once("\nhelp: ").unwrap_or((error, ""));
+        let all = verdicts.iter().filter(|of| of.is_coarser_grid == *is_coarser).count();
+        let noun = if *is_coarser { "coarser grid" } else { "case" };
         let problem = format!(
             "warning: the run would fail for {count} of {}: {}",
-            counted(verdicts.len(), "case"),
+            counted(all, noun),
             visible(problem)
         );
         let help = if help.is_empty() {

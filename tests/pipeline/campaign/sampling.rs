@@ -64,3 +64,19 @@ fn e2e_no_more_realizations_than_allowed() {
     let cases = read_table(&bench.out().join("statistics/cases.parquet"), &schema::CASES).unwrap();
     assert!(cases.text("caution").unwrap().iter().all(|words| words.split('+').any(|word| word == "imprecise")));
 }
+
+/// A finished cycle whose table cannot be read stops no command: it is computed again, and the number of realizations remains.
+#[test]
+fn e2e_a_damaged_table_of_a_sampled_run_is_repaired() {
+    let bench = Bench::new(&spec("{ until_relative_ci = 0.001, min = 2, max = 3 }"));
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let before = files(&bench.out());
+    let place = before.keys().find(|path| path.ends_with("steps.parquet")).unwrap();
+    Bench::damage(&bench.out().join(place));
+    assert_eq!(code(&bench.look("status", &[])), 0, "{}", stderr(&bench.look("status", &[])));
+    assert_eq!(code(&bench.look("verify", &["--deep"])), 1);
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let after = files(&bench.out());
+    assert!(before == after, "other files");
+}

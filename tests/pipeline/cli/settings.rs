@@ -71,3 +71,55 @@ fn e2e_the_resolved_spec_holds_the_settings() {
     assert_eq!(code(&bad), 2);
     assert!(stderr(&bad).contains("--> --set:1:17"), "{}", stderr(&bad));
 }
+
+/// A key of a table of the top is set alone. The other keys of the table keep their values.
+#[test]
+fn reg_a_setting_keeps_the_other_keys_of_its_table() {
+    let sweeps = "[[sweep]]\nname = \"a\"\nsurface.hurst = [0.7, 0.8]\n[[sweep]]\nname = \"b\"\nsurface.hurst = [0.6, 0.7]\n";
+    let figures = "figures = { format = [\"svg\"], width_mm = 60, across = [\"a\", \"b\"] }";
+    let until = "realizations = { until_relative_ci = 0.05, min = 3, max = 10 }";
+    let experiment = "[experiment]\nloops = [\"l.csv\"]\nforce_unit = \"nN\"\nbaseline = \"offset\"\nprobe_radius_m = 1e-5\n";
+    let text = format!("name = \"x\"\n{until}\n{figures}\n{sweeps}{experiment}");
+    let settings = ["figures.loads=all", "realizations.max=5", "experiment.force_unit=uN", "experiment.compression=negative"];
+    let written = text.replace("width_mm = 60", "width_mm = 60, loads = \"all\"").replace("max = 10", "max = 5");
+    let written = written.replace("\"nN\"", "\"uN\"\ncompression = \"negative\"");
+    assert_eq!(with(&text, &settings).unwrap(), Spec::parse(&written, "x.toml").unwrap());
+    // A whole table replaces the table.
+    let whole = with(&text, &["figures={ width_mm = 70 }", "realizations={ until_relative_ci = 0.1 }"]).unwrap();
+    let until = whole.realizations.until().unwrap();
+    assert_eq!((whole.figures.across.len(), whole.figures.width_mm, until.min, until.max), (0, 70.0, 6, 200));
+    assert!(with(&text, &["experiment={ force = \"F\" }"]).unwrap_err().contains("names no file"));
+}
+
+/// Faults that follow from several values have their places in the setting too, not at the same columns of the spec.
+#[test]
+fn reg_faults_of_lists_in_a_setting_name_the_option() {
+    let elements = "name = \"x\"\nsurface.magnification = 4\nmodel.method = \"boundary_elements\"\n";
+    for (setting, message, place) in [
+        ("boundary_elements.points=[8, 64]", "8 x 8 points has 2 points", "--> --set:1:29\n"),
+        ("boundary_elements.points_per_wavelength=[2, 16]", "is 2: at least 4 are needed", "--> --set:1:44\n"),
+        ("boundary_elements.error=[0.1]", "holds for all cases", "--> --set:1:27\n"),
+        ("figures.across=[\"a\", \"b\"]", "unknown sweep \"a\"", "--> --set:1:19\n"),
+        ("figures={ across = [\"a\", \"b\"] }", "unknown sweep \"b\"", "--> --set:1:28\n"),
+        ("realizations.max=20000", "`realizations.max` cannot be 20000", "--> --set:1:20\n"),
+    ] {
+        let text = format!("{elements}realizations = {{ until_relative_ci = 0.1 }}\n");
+        let said = with(&text, &["seed=1", setting]).unwrap_err();
+        assert!(said.contains(message) && said.contains(place), "{setting}: {said}");
+    }
+}
+
+/// Checksums of a resolved spec are those of its files: a setting that names others leaves them out.
+#[test]
+fn reg_a_setting_of_files_replaces_their_checksums() {
+    let digest = "0".repeat(64);
+    for (lines, file, setting) in [
+        ("surface = { file = \"a.h5\", periodic = true }", "a.h5", "surface.file=b.h5"),
+        ("[experiment]\nloops = [\"a.csv\"]", "a.csv", "experiment.loops=[\"b.csv\"]"),
+        ("[experiment]\nloops = [\"a.csv\"]", "a.csv", "experiment={ loops = [\"b.csv\"] }"),
+    ] {
+        let text = format!("name = \"x\"\n{lines}\n[files]\n\"{file}\" = \"{digest}\"\n");
+        assert_eq!(with(&text, &[]).unwrap().files.len(), 1);
+        assert!(with(&text, &[setting]).unwrap_or_else(|said| panic!("{said}")).files.is_empty(), "{setting}");
+    }
+}

@@ -66,7 +66,7 @@ pub(super) fn import_all(asked: &ImportArguments) -> Result<u8, Fault> {
     if answers.is_empty() {
         let (problem, help) =
             left.first().and_then(|(_, why)| why.split_once("\nhelp: ")).unwrap_or_default();
-        return Err(failed(format!("no loop of {} files was read: {problem}\nhelp: {help}", outs.len())));
+        return Err(failed(format!("none of {} loops was imported: {problem}\nhelp: {help}", outs.len())));
     }
     if asked.json {
         let left: Vec<Value> = left.iter().map(|(name, why)| json!({ "name": name, "why": why })).collect();
@@ -239,7 +239,14 @@ fn conditions(found: &MeasuredLoop) -> Vec<(&'static str, String)> {
                  {before} points before contact and {after} after separation"
             ),
         ),
-        ("noise", format!("{:.2e} N without contact; closure {:.1} %", of.noise_n, 100.0 * of.closure)),
+        (
+            "noise",
+            format!(
+                "{:.2e} N without contact; closure {:.1} %",
+                of.noise_n,
+                (1e3 * of.closure).round() / 10.0 + 0.0
+            ),
+        ),
     ];
     if let Some(stiffness) = found.options.machine_stiffness_n_m {
         lines.push(("machine", format!("F/k subtracted from the displacement, k = {stiffness} N/m")));

@@ -184,7 +184,7 @@ fn reversal(way: &[f64], load: &[f64]) -> Result<usize, PhysicsError> {
     }
     if count < FEWEST {
         return Err(fault(
-            format!("the loop has {count} points"),
+            format!("the loop has {count} point{}", if count == 1 { "" } else { "s" }),
             "a loop needs at least 30 points, from before contact to after separation",
         ));
     }
