@@ -7,6 +7,7 @@
 mod campaign;
 mod cycle;
 mod elements;
+mod laws;
 mod pairs;
 mod paper;
 mod sums;
@@ -20,7 +21,7 @@ use std::env::args;
 fn main() {
     // Cargo itself adds `--bench`.
     let wanted: Vec<String> = args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    let all: [(&str, fn()); 7] = [
+    let all: [(&str, fn()); 8] = [
         ("pairs", pairs::run),
         ("sums", sums::run),
         ("surfaces", surfaces::run),
@@ -30,6 +31,7 @@ fn main() {
         ("tables", || println!("tables: not without the feature `store`")),
         ("cycle", cycle::run),
         ("elements", elements::run),
+        ("laws", laws::run),
         #[cfg(feature = "stats")]
         ("planning", campaign::run),
         #[cfg(not(feature = "stats"))]
