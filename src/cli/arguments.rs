@@ -210,8 +210,6 @@ pub(super) struct ImportArguments {
     /// Low-pass (S-filter) cut-off wavelength in pixels [default: 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(4..=64))]
     pub(super) points: Option<u8>,
-    #[command(flatten)]
-    pub(super) of_loop: LoopArguments,
     /// Report the statistics without writing a file
     #[arg(long, short = 'n')]
     pub(super) dry_run: bool,
@@ -221,6 +219,8 @@ pub(super) struct ImportArguments {
     /// Print JSON, with the power spectrum
     #[arg(long)]
     pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) of_loop: LoopArguments,
 }
 
 #[derive(Debug, Args)]

@@ -346,6 +346,42 @@ fn options(help: &str, heading: &str) -> Vec<String> {
     names.map(|name| name.trim_end_matches(',').to_owned()).collect()
 }
 
+/// Options of scans.
+const OF_SCANS: [&[&str]; 16] = [
+    &["--dataset", "z"],
+    &["--pixel-m", "1e-9"],
+    &["--size", "5um"],
+    &["--unit", "nm"],
+    &["--skip-lines", "1"],
+    &["--width", "4"],
+    &["--transpose"],
+    &["--fill"],
+    &["--detrend", "plane"],
+    &["--outliers"],
+    &["--align-rows"],
+    &["--fast-axis", "rows", "--align-rows"],
+    &["--tip-radius", "1e-8"],
+    &["--periodic"],
+    &["--filter", "gaussian"],
+    &["--points", "8"],
+];
+
+/// Options of measured loops.
+const OF_LOOPS: [&[&str]; 12] = [
+    &["--loop"],
+    &["--force-column", "1"],
+    &["--force-unit", "nN"],
+    &["--displacement-column", "2"],
+    &["--displacement-unit", "um"],
+    &["--radius-column", "a"],
+    &["--radius-unit", "um"],
+    &["--compression", "auto"],
+    &["--baseline", "line"],
+    &["--probe-radius", "20um"],
+    &["--modulus", "1e6"],
+    &["--machine-stiffness", "30"],
+];
+
 /// An option of measured loops with a scan or a container, and one of scans with a loop, is an error that names it. The lists have every option of the help.
 #[test]
 fn reg_options_of_the_other_kind_are_refused() {
@@ -354,45 +390,13 @@ fn reg_options_of_the_other_kind_are_refused() {
     let line = |x: usize| (0..48).map(|y| format!("{} ", (7 * x + y * y) % 11)).collect::<String>() + "\n";
     fs::write(at("scan.txt"), (0..48).map(line).collect::<String>()).unwrap();
     fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("data/examples/probe_loop.csv"), at("loop.csv")).unwrap();
-    let of_scans: [&[&str]; 16] = [
-        &["--dataset", "z"],
-        &["--pixel-m", "1e-9"],
-        &["--size", "5um"],
-        &["--unit", "nm"],
-        &["--skip-lines", "1"],
-        &["--width", "4"],
-        &["--transpose"],
-        &["--fill"],
-        &["--detrend", "plane"],
-        &["--outliers"],
-        &["--align-rows"],
-        &["--fast-axis", "rows", "--align-rows"],
-        &["--tip-radius", "1e-8"],
-        &["--periodic"],
-        &["--filter", "gaussian"],
-        &["--points", "8"],
-    ];
-    let of_loops: [&[&str]; 12] = [
-        &["--loop"],
-        &["--force-column", "1"],
-        &["--force-unit", "nN"],
-        &["--displacement-column", "2"],
-        &["--displacement-unit", "um"],
-        &["--radius-column", "a"],
-        &["--radius-unit", "um"],
-        &["--compression", "auto"],
-        &["--baseline", "line"],
-        &["--probe-radius", "20um"],
-        &["--modulus", "1e6"],
-        &["--machine-stiffness", "30"],
-    ];
     let names = |of: &[&[&str]]| -> Vec<String> { of.iter().map(|option| option[0].to_owned()).collect() };
     let help = stdout(&hysteron(&bench, &["import", "--help"]));
-    assert_eq!(options(&help, "Options for measured loops:"), names(&of_loops));
+    assert_eq!(options(&help, "Options for measured loops:"), names(&OF_LOOPS));
     let others: Vec<String> = options(&help, "Options:");
     let of_output = ["--out", "--dry-run", "--force", "--json", "--help"];
     let read: Vec<String> = others.into_iter().filter(|name| !of_output.contains(&name.as_str())).collect();
-    assert_eq!(read, names(&of_scans));
+    assert_eq!(read, names(&OF_SCANS));
     let scan = ["scan.txt", "--size", "40um", "--unit", "nm"];
     let refused = |file: &[&str], option: &[&str], words: &str| {
         let output = hysteron(&bench, &[&["import", "-n"], file, option].concat());
@@ -401,10 +405,10 @@ fn reg_options_of_the_other_kind_are_refused() {
         assert!(said.starts_with(&format!("error: cannot import {} as a {words}: ", file[0])), "{said}");
         assert!(said.contains(option[0]) && said.contains("\nhelp: leave them out"), "{said}");
     };
-    for option in of_scans {
+    for option in OF_SCANS {
         refused(&["loop.csv"], option, "measured loop: options of scans");
     }
-    for option in of_loops {
+    for option in OF_LOOPS {
         // The first names and the columns make any text a loop.
         let is_loop = ["--loop", "--force-column", "--displacement-column"].contains(&option[0]);
         if !is_loop {

@@ -5,7 +5,7 @@ use crate::cli::ImportArguments;
 use crate::text::shown;
 use std::path::Path;
 
-/// Options with their names; true for those that are given.
+/// Names of options; true if the option is given.
 type Given = [(&'static str, bool)];
 
 /// Refuses options of measured loops with scans.
