@@ -3,9 +3,10 @@
 use super::StatsError;
 use crate::store::Frame;
 
-/// Persson and Tosatti's work of adhesion `Δγ (1 + h'²/2) - U_el` of each row of the table `cases`, with all of
-/// its roughness \[J/m²\]: the row of the shortest cut-off in the table `cutoff`. Nothing for `U_el ≥ Δγ` and
-/// without such a row.
+/// Persson and Tosatti's work of adhesion `Δγ (1 + h'²/2) - U_el` \[J/m²\] of each row of the table `cases`.
+///
+/// It is that of all roughness: of the shortest cut-off in the table `cutoff`. Nothing for `U_el ≥ Δγ`, and
+/// for a case that this table does not have.
 pub(super) fn persson_tosatti(cases: &Frame, cutoff: &Frame) -> Result<Vec<Option<f64>>, StatsError> {
     let (ids, works) = (cutoff.text("case_id")?, cutoff.f64_or_null("work_persson_tosatti_j_m2")?);
     let of = |id: &&str| ids.iter().rposition(|other| other == id).and_then(|row| works[row]);

@@ -236,7 +236,8 @@ fn persson_tosatti(
     let rows =
         if count == shown.len() { String::new() } else { format!(", {count} of {} rows", shown.len()) };
     Ok(wrapped(&format!(
-        "Persson-Tosatti, closing and opening: Δγ (1\u{a0}+\u{a0}h'²/2) - U_el = {range}\u{a0}mJ/m²{rows}; h': rms slope."
+        "Persson-Tosatti, closing and opening: Δγ (1\u{a0}+\u{a0}h'²/2) - U_el = \
+         {range}\u{a0}mJ/m²{rows}; h':\u{a0}rms\u{a0}slope."
     )))
 }
 
