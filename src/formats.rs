@@ -267,14 +267,21 @@ pub(crate) fn container() -> String {
     }
 }
 
+/// True for a regular file. What is not, such as a pipe or a device, might not end.
+///
+/// # Errors
+/// Error of the system, for instance of a missing file.
+pub fn is_regular(path: &Path) -> io::Result<bool> {
+    Ok(std::fs::metadata(path)?.is_file())
+}
+
 /// Recognises the format of a file without reading more than its beginning.
 ///
 /// # Errors
 /// Error of the system, or a file that is not regular. The inner error is a file in a format that is not
 /// read.
 pub fn recognize(path: &Path) -> io::Result<Result<Found, Refusal>> {
-    // What is not a file, such as a pipe or a device, might not end.
-    if !std::fs::metadata(path)?.is_file() {
+    if !is_regular(path)? {
         return Err(io::Error::other("not a regular file"));
     }
     let mut first = Vec::new();

@@ -25,6 +25,8 @@ pub struct Audit {
     pub unreceipted: Vec<String>,
     /// Other files in the program's own folders that no receipt names, by their places.
     pub unnamed: Vec<String>,
+    /// Those of `unnamed` that the program wrote and `hysteron gc --delete` deletes.
+    pub left_over: Vec<String>,
 }
 
 impl Audit {
@@ -63,6 +65,11 @@ impl Campaign {
             }
         }
         (whole.unreceipted, whole.unnamed) = self.lost(&sound);
+        if !whole.unnamed.is_empty() {
+            let leftovers = self.leftovers(&[]);
+            let goes = |place: &&String| leftovers.iter().any(|left| left.takes(&self.dir.join(place)));
+            whole.left_over = whole.unnamed.iter().filter(goes).cloned().collect();
+        }
         whole
     }
 

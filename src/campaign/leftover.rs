@@ -1,6 +1,6 @@
 //! Unreferenced files: no spec names them.
 
-use super::lost::entries;
+use super::lost::{entries, owner};
 use super::owned::is_marked;
 use super::{Campaign, REPORT_PAGE, Stage, Standing};
 use crate::schema::TABLES;
@@ -23,6 +23,7 @@ pub struct Leftover {
 
 const UNNAMED: &str = "no spec names it";
 const UNSHOWN: &str = "the report does not show it";
+const UNMADE: &str = "the statistics do not have it";
 const TORN: &str = "a killed run left it";
 /// Folders of files that are put in place.
 const FOLDERS: [&str; 9] =
@@ -68,6 +69,7 @@ impl Campaign {
             let unshown = pictures.filter(|path| !kept.contains(path) && self.is_drawn(&drawn, path));
             found.extend(unshown.map(|path| Leftover { size_bytes: size(&path), path, why: UNSHOWN }));
         }
+        found.extend(self.earlier_tables());
         for campaign in all() {
             for unit in campaign.distinct_cycles() {
                 for path in [self.failure_path(&unit), self.halfway_path(&unit)] {
@@ -94,6 +96,24 @@ impl Campaign {
 }
 
 impl Campaign {
+    /// Tables of earlier statistics and panels that the present ones do not have, with their schemas.
+    fn earlier_tables(&self) -> Vec<Leftover> {
+        let tables = TABLES.iter().filter(|table| table.file.starts_with("statistics/"));
+        let places = tables.map(|table| table.file.to_owned());
+        let schemas = TABLES.iter().map(|table| format!("schemas/{}.json", table.name));
+        let is_earlier = |place: &String| {
+            let receipt = owner(place).map(|(stage, id)| self.receipts_dir(stage).join(format!("{id}.json")));
+            let is_named = receipt.is_none_or(|path| match read_receipt(&path) {
+                Found::Whole(receipt) => receipt.files.iter().any(|file| file.path == *place),
+                _ => true,
+            });
+            let path = self.dir.join(place);
+            !is_named && path.is_file() && is_marked(&path)
+        };
+        let paths = places.chain(schemas).filter(is_earlier).map(|place| self.dir.join(place));
+        paths.map(|path| Leftover { size_bytes: size(&path), path, why: UNMADE }).collect()
+    }
+
     /// True if a file of a task, or the folder of a cycle, is of the program: a receipt names it, or it has
     /// the marks of one.
     fn is_written(&self, stage: Stage, path: &Path) -> bool {
@@ -108,6 +128,12 @@ impl Campaign {
 }
 
 impl Leftover {
+    /// True if its removal takes a file away.
+    pub(super) fn takes(&self, file: &Path) -> bool {
+        self.path == file
+            || file.parent() == Some(&self.path) && cycle_files(&self.path).iter().any(|own| own == file)
+    }
+
     /// Takes it away; of a folder only the files of a cycle, and the folder if nothing else is in it.
     ///
     /// # Errors

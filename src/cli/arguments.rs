@@ -202,17 +202,14 @@ pub(super) struct ImportArguments {
     /// The surface is periodic
     #[arg(long)]
     pub(super) periodic: bool,
-    /// S-filter: gaussian (ISO 16610-61) or sharp
+    /// S-filter: gaussian (ISO 16610-61) or sharp [default: gaussian]
     #[arg(
-        long, value_name = "FILTER", default_value = "gaussian", value_parser = ["gaussian", "sharp"],
-        hide_possible_values = true
+        long, value_name = "FILTER", value_parser = ["gaussian", "sharp"], hide_possible_values = true
     )]
-    pub(super) filter: String,
-    /// Low-pass (S-filter) cut-off wavelength in pixels
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(4..=64))]
-    pub(super) points: u8,
-    #[command(flatten)]
-    pub(super) of_loop: LoopArguments,
+    pub(super) filter: Option<String>,
+    /// Low-pass (S-filter) cut-off wavelength in pixels [default: 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(4..=64))]
+    pub(super) points: Option<u8>,
     /// Report the statistics without writing a file
     #[arg(long, short = 'n')]
     pub(super) dry_run: bool,
@@ -222,6 +219,8 @@ pub(super) struct ImportArguments {
     /// Print JSON, with the power spectrum
     #[arg(long)]
     pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) of_loop: LoopArguments,
 }
 
 #[derive(Debug, Args)]

@@ -238,7 +238,11 @@ const LIST: [Parameter; COUNT] = [
     )
     .of_method(),
     parameter(
-        text("boundary", "Boundary condition of the square: \"periodic\" or \"isolated\""),
+        text(
+            "boundary",
+            "Boundary condition of the square: \"periodic\" or \"isolated\"; of boundary elements always \
+             \"periodic\": unless on a probe, mirror images continue a scan that is not periodic",
+        ),
         ["boundary", "boundary"],
         20,
         |case| Some(word(case.params.boundary())),

@@ -437,6 +437,9 @@ pub const OTHER_LOADS: [&str; 2] = ["max_force_n", "max_pressure_pa"];
 /// Keys of `[boundary_elements]` that choose the grid instead of its points.
 pub const OTHER_GRIDS: [&str; 3] = ["points_per_wavelength", "error", "max_points"];
 
+/// Keys of `[model]` that the asperity model alone reads.
+pub const OF_ASPERITIES: [&str; 5] = ["interaction", "boundary", "coalescence", "jump_in", "allow_low_tabor"];
+
 /// Keys of `[surface]` that describe a measured surface.
 pub const MEASURED: [&str; 18] = [
     "file",

@@ -58,7 +58,10 @@ pub use elements::{
 pub use fault::{Fault, Place, SpecErrors};
 pub use figures::{FORMATS, Figures};
 pub use json_schema::{SCHEMA_FILE, json_schema};
-pub use keys::{GENERATED, MEASURED, NAMES, OPTIONAL_TABLES, OTHER_GRIDS, OTHER_LOADS, REPLACED, WHERE_USED};
+pub use keys::{
+    GENERATED, MEASURED, NAMES, OF_ASPERITIES, OPTIONAL_TABLES, OTHER_GRIDS, OTHER_LOADS, REPLACED,
+    WHERE_USED,
+};
 pub use per_wavelength::shortest_lengths;
 pub use probe::{contact_radius_m, probe_refusal};
 pub use realizations::{Realizations, Until};

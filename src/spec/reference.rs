@@ -33,11 +33,6 @@ Editors that read JSON Schema complete and check a spec. For the extension Even 
 ";
 
 const SWEEP: &str = "
-## `[[sweep]]`
-
-A sweep has a `name` (as above, unique in the spec) and overrides keys of `[surface]`, `[material]`,
-`[model]`, `[boundary_elements]` and `[cycle]`:
-
 ```toml
 [[sweep]]
 name = \"adhesion\"
@@ -80,7 +75,18 @@ pub fn reference() -> String {
     }
     let cases = paragraph("- ", &format!("The sweeps of a spec make at most {MAX_CASES} cases."));
     page += &experiment();
-    page + SWEEP + &cases + "\n" + FILES
+    page + "\n## `[[sweep]]`\n\n" + &overridden() + "\n" + SWEEP + &cases + "\n" + FILES
+}
+
+/// The tables whose keys a sweep overrides, as a paragraph.
+fn overridden() -> String {
+    let tables = TABLES.map(|name| format!("`[{name}]`"));
+    let (last, others) = tables.split_last().map_or(("", &tables[..0]), |(last, others)| (last, others));
+    let list = format!("{} and {last}", others.join(", "));
+    paragraph(
+        "",
+        &format!("A sweep has a `name` (as above, unique in the spec) and overrides keys of {list}:"),
+    )
 }
 
 /// The keys outside of the tables.

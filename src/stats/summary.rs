@@ -129,11 +129,16 @@ pub enum Shown {
 
 /// The results of every case as lines of at most 80 columns. Each sweep lists all of its cases, the reference
 /// case first, the others in the order of the spec, and its verdict. `methods` is the table of both methods
-/// on the same surfaces.
+/// on the same surfaces, `cutoff` that of models over the cut-off wavelength.
 ///
 /// # Errors
 /// If a table lacks one of its columns.
-pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<String, StatsError> {
+pub fn summary(
+    cases: &Frame,
+    methods: Option<&Frame>,
+    cutoff: Option<&Frame>,
+    shown: Shown,
+) -> Result<String, StatsError> {
     let mut lines = Vec::new();
     let (mut compared, mut has_errors) = (false, false);
     let loads = loads(cases)?.all_labels();
@@ -155,7 +160,7 @@ pub fn summary(cases: &Frame, methods: Option<&Frame>, shown: Shown) -> Result<S
     }
     let all: Vec<usize> = (0..cases.row_count()).collect();
     lines.extend(grid_help(cases, &all)?.map(|help| format!("help: {help}")));
-    lines.extend(in_si(cases)?);
+    lines.extend(in_si(cases, cutoff)?);
     let mut head = vec![MEANS.to_owned(), loads_head(cases)?.to_owned(), results_head(cases)?];
     head.extend(compared.then(|| REFERENCE.to_owned()));
     head.extend(has_errors.then(|| ERRORS.to_owned()));
@@ -183,7 +188,7 @@ fn results_head(cases: &Frame) -> Result<String, StatsError> {
 }
 
 /// The results of all sweeps in SI units: per nominal area, and of probes.
-fn in_si(cases: &Frame) -> Result<Vec<String>, StatsError> {
+fn in_si(cases: &Frame, cutoff: Option<&Frame>) -> Result<Vec<String>, StatsError> {
     let radii = cases.f64_or_null("probe_radius_m")?;
     let mut lines = Vec::new();
     for (is_probe, header, results) in
@@ -205,26 +210,35 @@ fn in_si(cases: &Frame) -> Result<Vec<String>, StatsError> {
             let has_fewer = tables.iter().any(|line| line.starts_with(SURFACES));
             lines.extend(tables);
             lines.extend(has_fewer.then(|| SURFACES_NOTE.to_owned()));
-            lines.extend(persson_tosatti(cases, |row| radii[row].is_some() == is_probe)?);
+            if let Some(cutoff) = cutoff {
+                lines.extend(persson_tosatti(cases, cutoff, |row| radii[row].is_some() == is_probe)?);
+            }
         }
     }
     Ok(lines)
 }
 
-/// Persson and Tosatti's work of adhesion of the rows that are shown, as a line; nothing where U_el ≥ Δγ.
-fn persson_tosatti(cases: &Frame, is_shown: impl Fn(usize) -> bool) -> Result<Option<String>, StatsError> {
-    let (works, done) = (models::persson_tosatti(cases)?, cases.i64("done_count")?);
+/// Persson and Tosatti's work of adhesion of the rows that are shown, as lines; nothing where U_el ≥ Δγ.
+fn persson_tosatti(
+    cases: &Frame,
+    cutoff: &Frame,
+    is_shown: impl Fn(usize) -> bool,
+) -> Result<Vec<String>, StatsError> {
+    let (works, done) = (models::persson_tosatti(cases, cutoff)?, cases.i64("done_count")?);
     let is_finished = |row: &usize| is_shown(*row) && done[*row] > 0;
     let shown: Vec<Option<f64>> = (0..works.len()).filter(is_finished).map(|row| works[row]).collect();
     let known = || shown.iter().flatten().copied();
     let [low, high] = [f64::min, f64::max]
         .map(|pick: fn(f64, f64) -> f64| known().reduce(pick).map(|work| significant(1e3 * work, 3)));
-    let Some((low, high)) = low.zip(high) else { return Ok(None) };
+    let Some((low, high)) = low.zip(high) else { return Ok(Vec::new()) };
     let range = if low == high { low } else { format!("{low} to {high}") };
     let count = known().count();
     let rows =
         if count == shown.len() { String::new() } else { format!(", {count} of {} rows", shown.len()) };
-    Ok(Some(format!("Persson-Tosatti, closing and opening: Δγ - U_el = {range} mJ/m²{rows}.")))
+    Ok(wrapped(&format!(
+        "Persson-Tosatti, closing and opening: Δγ (1\u{a0}+\u{a0}h'²/2) - U_el = \
+         {range}\u{a0}mJ/m²{rows}; h':\u{a0}rms\u{a0}slope."
+    )))
 }
 
 /// The rows of a sweep under their headings.

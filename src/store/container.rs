@@ -13,7 +13,7 @@ use serde_json::Value;
 use zip::ZipArchive;
 
 use super::error::{Cause, StoreError, fenced};
-use crate::formats::is_of_container;
+use crate::formats::{is_of_container, is_regular};
 
 /// Metadata of a container.
 const INDEX: &str = "index.json";
@@ -63,7 +63,8 @@ pub struct Container {
 
 impl Container {
     /// Reads the list of a zip archive with several measurements. Nothing for another file: one X3P scan and
-    /// a NumPy archive are zip archives too.
+    /// a NumPy archive are zip archives too. Nothing either for a file that is missing or cannot be opened:
+    /// [`recognize`](crate::formats::recognize) has the reason.
     ///
     /// # Errors
     /// If the file cannot be read, or the archive or its metadata are damaged.
@@ -72,8 +73,12 @@ impl Container {
     }
 
     fn read(path: &Path) -> Result<Option<Self>, Cause> {
+        if !is_regular(path).unwrap_or_default() {
+            return Ok(None);
+        }
+        let Ok(file) = File::open(path) else { return Ok(None) };
         let mut first = Vec::new();
-        File::open(path)?.take(FIRST).read_to_end(&mut first)?;
+        file.take(FIRST).read_to_end(&mut first)?;
         if !first.starts_with(b"PK\x03\x04") {
             return Ok(None);
         }
@@ -138,10 +143,7 @@ impl Container {
 /// The error of a container, with help.
 fn refused(path: &Path, cause: Cause) -> StoreError {
     let why = cause.to_string();
-    let help = match cause.downcast_ref::<std::io::Error>().map(std::io::Error::kind) {
-        Some(std::io::ErrorKind::NotFound) => "check the path",
-        _ => "download or export the container again, or unpack it and import its files",
-    };
+    let help = "download or export the container again, or unpack it and import its files";
     let cause = if why.contains("\nhelp: ") { cause } else { format!("{why}\nhelp: {help}").into() };
     StoreError::new("read the container", path, cause)
 }

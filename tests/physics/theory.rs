@@ -162,7 +162,7 @@ fn val_dalvi_and_fuller_and_tabor_by_hand() {
 fn val_pinning_and_the_sticky_line_by_hand() {
     // 2 · 1.35 · 0.01 · 1e-6.
     close("pinning", pinning_loss(&PAPER, 0.01, 1e-6).unwrap(), 2.7e-8, 1e-14);
-    // k e_el = Δγ/2 at e_el = 0.035/1.35 = 0.0259.
+    // k U_el = Δγ/2 at U_el = 0.035/1.35 = 0.0259.
     assert!(pinning_loss(&PAPER, 0.0258, 1e-6).is_some() && pinning_loss(&PAPER, 0.0260, 1e-6).is_none());
     close("sticky line", sticky_line(3.0), 1.5, 1e-15);
 }

@@ -66,7 +66,7 @@ fn table(inputs: &[CaseInput], count: i32) -> Frame {
 
 #[test]
 fn law_every_sweep_lists_its_cases_by_what_varies_the_reference_first() {
-    let text = summary(&table(&sensitivity(), 3), None, Shown::All).unwrap();
+    let text = summary(&table(&sensitivity(), 3), None, None, Shown::All).unwrap();
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     assert!(!text.contains("H0.80") && !text.contains("coalescence+"), "{text}");
     let block = |sweep: &str| -> Vec<&str> {
@@ -85,13 +85,13 @@ fn law_every_sweep_lists_its_cases_by_what_varies_the_reference_first() {
     assert_eq!(numbers, ["0.0", "0.0", "-23.1", "-23.1"], "{text}");
     assert!(text.contains("*: reference case"));
     // Of fewer surfaces than the spec asks for, means differ by the surfaces too.
-    let partial = summary(&table(&sensitivity(), 2), None, Shown::All).unwrap();
+    let partial = summary(&table(&sensitivity(), 2), None, None, Shown::All).unwrap();
     assert!(partial.contains("cover*") && !partial.contains("change [%]"), "{partial}");
 }
 
 #[test]
 fn reg_the_table_of_results() {
-    insta::assert_snapshot!("results", summary(&table(&sensitivity(), 3), None, Shown::All).unwrap());
+    insta::assert_snapshot!("results", summary(&table(&sensitivity(), 3), None, None, Shown::All).unwrap());
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn law_rows_and_sweeps_have_the_order_of_the_spec() {
         [with("c", "rough", 64.0, 0.8), with("a", "rough", 512.0, 0.8), with("b", "rough", 128.0, 0.8), with("d", "hurst", 64.0, 0.7)];
     let frame = table(&inputs, 2);
     assert_eq!(frame.text("case_id").unwrap(), ["c", "a", "b", "d"]);
-    let text = summary(&frame, None, Shown::All).unwrap();
+    let text = summary(&frame, None, None, Shown::All).unwrap();
     let places: Vec<_> = ["\nrough ", "ζ=64", "ζ=512", "ζ=128", "\nhurst "].iter().map(|label| text.find(label).unwrap()).collect();
     assert!(places.is_sorted(), "{text}");
 }
@@ -130,14 +130,14 @@ fn law_headings_of_sweeps_have_what_is_constant_in_them() {
 fn law_a_campaign_without_a_shared_case_has_no_reference() {
     let mut inputs = sensitivity();
     inputs.iter_mut().for_each(|input| input.sweep = "all".to_owned());
-    let text = summary(&table(&inputs, 2), None, Shown::All).unwrap();
+    let text = summary(&table(&inputs, 2), None, None, Shown::All).unwrap();
     assert!(!text.contains("reference") && !text.contains("change [%]"), "{text}");
     assert!(text.contains("\nisolated, cover, sample\n") && text.contains("\nperiodic, cover, spectrum\n"), "{text}");
 }
 
 #[test]
 fn law_one_case_is_named_by_its_surface() {
-    let text = summary(&table(&[case("H0.80_z128-0a", "", 0.8, 128.0, &[0.0071])], 2), None, Shown::All).unwrap();
+    let text = summary(&table(&[case("H0.80_z128-0a", "", 0.8, 128.0, &[0.0071])], 2), None, None, Shown::All).unwrap();
     assert!(text.contains("ζ=128, H=0.8") && !text.contains("H0.80"), "{text}");
 }
 
@@ -146,7 +146,7 @@ fn law_no_number_vanishes_in_the_scale_of_its_column() {
     let whole = table(&[case("a", "", 0.8, 128.0, &[0.0071])], 3);
     let row = |columns: &[(&str, f64)]| {
         let frame = columns.iter().fold(whole.clone(), |frame, (name, value)| replaced(&frame, name, 0, *value));
-        let text = summary(&frame, None, Shown::All).unwrap();
+        let text = summary(&frame, None, None, Shown::All).unwrap();
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
         text
     };
@@ -176,7 +176,7 @@ fn law_all_numbers_of_a_column_have_one_notation() {
             .iter()
             .enumerate()
             .fold(whole.clone(), |frame, (row, loss)| replaced(&replaced(&frame, "loss_mean", row, *loss), "loss_sd", row, 0.1 * loss));
-        let text = summary(&frame, None, Shown::All).unwrap();
+        let text = summary(&frame, None, None, Shown::All).unwrap();
         let head = text.lines().find(|line| line.starts_with("adhesion")).unwrap().to_owned();
         let cells =
             text.lines().filter(|line| line.starts_with("Δγ")).take(3).map(|line| line.split_whitespace().rev().nth(1).unwrap().to_owned());

@@ -280,6 +280,20 @@ fn e2e_measured_and_simulated_loops_are_beside_each_other() {
     let plain = hysteron(folder.path(), &["run", "plain.toml", "--out", "plain"]);
     assert!(code(&plain) == 0 && !at("plain/statistics/measured_loops.parquet").exists(), "{}", stderr(&plain));
     assert!(!fs::read_to_string(at("plain/datapackage.json")).unwrap().contains("measured_"));
+    // Tables and figure of the loops that the spec no longer has are left over.
+    fs::write(at("mine.toml"), spec("")).unwrap();
+    assert_eq!(code(&run()), 0);
+    let verified = stdout(&hysteron(folder.path(), &["verify", "out"]));
+    assert!(verified.contains("3 faults.\n`hysteron gc out --delete` deletes 3 files"), "{verified}");
+    let tables = [&MEASURED_LOOPS, &MEASURED_STEPS].map(|table| at("out").join(table.file));
+    let mine = at("out/statistics/mine.parquet");
+    fs::write(&mine, "mine").unwrap();
+    assert!(tables.iter().all(|path| path.is_file()));
+    assert_eq!(code(&hysteron(folder.path(), &["gc", "out", "--delete"])), 0);
+    assert!(!tables.iter().any(|path| path.exists()) && mine.is_file() && !at("out/figures/measured_loops.svg").exists());
+    fs::remove_file(&mine).unwrap();
+    assert_eq!(code(&hysteron(folder.path(), &["verify", "out", "--deep"])), 0);
+    assert!(stdout(&run()).contains("Nothing to do"));
 }
 
 #[test]

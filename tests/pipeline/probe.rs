@@ -6,6 +6,7 @@ use hysteron::store::Frame;
 use hysteron::store::parquet::read_table;
 
 use crate::bench::{Bench, code, stderr, stdout};
+use std::process::Command;
 
 /// A nearly smooth sphere of 20 µm on an elastomer, on a grid of 8 points per JKR radius.
 const SPHERE: &str = "name = \"sphere\"
@@ -113,6 +114,25 @@ fn e2e_the_plan_states_probe_machine_and_layer() {
 }
 
 /// Labels of cases that differ in a layer alone: one has none.
+/// The templates and their plans state the same number of grid points per JKR radius a0 = (2πΔγR²/E*)^(1/3) = 4.225 µm, on a spacing of
+/// 40 µm / 128.
+#[test]
+fn val_the_templates_state_the_grid_of_their_plan() {
+    for name in ["probe", "loop"] {
+        let bench = Bench::new("");
+        let program = |arguments: &[&str]| {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_hysteron"));
+            stdout(&command.args(arguments).current_dir(bench.folder.path()).output().unwrap())
+        };
+        let text = program(&["init", name]);
+        std::fs::write(bench.spec(), &text).unwrap();
+        let plan = program(&["plan", "spec.toml"]);
+        let points = (std::f64::consts::TAU * 0.03 * 2e-5 * 2e-5 / 1e6).cbrt() / (4e-5 / 128.0);
+        assert!(plan.split_whitespace().collect::<Vec<_>>().join(" ").contains(&format!("({points:.0} grid points)")), "{plan}");
+        assert!(text.contains(&format!("# {points:.0} points per JKR radius;")), "{text}");
+    }
+}
+
 #[test]
 fn e2e_labels_of_cases_with_and_without_a_layer() {
     let layered =

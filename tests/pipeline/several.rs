@@ -339,6 +339,109 @@ fn reg_options_of_import_are_refused_with_help() {
     assert!(status == 1 && found.contains("help: a run of a spec with surface.files"), "{found}");
 }
 
+/// Options of a section of the help of `import`, by its heading.
+fn options(help: &str, heading: &str) -> Vec<String> {
+    let lines = help.lines().skip_while(|line| *line != heading).skip(1).take_while(|line| line.is_empty() || line.starts_with(' '));
+    let names = lines.filter_map(|line| line.split_whitespace().find(|word| word.starts_with("--") && line.trim_start().starts_with('-')));
+    names.map(|name| name.trim_end_matches(',').to_owned()).collect()
+}
+
+/// Options of scans.
+const OF_SCANS: [&[&str]; 16] = [
+    &["--dataset", "z"],
+    &["--pixel-m", "1e-9"],
+    &["--size", "5um"],
+    &["--unit", "nm"],
+    &["--skip-lines", "1"],
+    &["--width", "4"],
+    &["--transpose"],
+    &["--fill"],
+    &["--detrend", "plane"],
+    &["--outliers"],
+    &["--align-rows"],
+    &["--fast-axis", "rows", "--align-rows"],
+    &["--tip-radius", "1e-8"],
+    &["--periodic"],
+    &["--filter", "gaussian"],
+    &["--points", "8"],
+];
+
+/// Options of measured loops.
+const OF_LOOPS: [&[&str]; 12] = [
+    &["--loop"],
+    &["--force-column", "1"],
+    &["--force-unit", "nN"],
+    &["--displacement-column", "2"],
+    &["--displacement-unit", "um"],
+    &["--radius-column", "a"],
+    &["--radius-unit", "um"],
+    &["--compression", "auto"],
+    &["--baseline", "line"],
+    &["--probe-radius", "20um"],
+    &["--modulus", "1e6"],
+    &["--machine-stiffness", "30"],
+];
+
+/// An option of measured loops with a scan or a container, and one of scans with a loop, is an error that names it. The lists have every option of the help.
+#[test]
+fn reg_options_of_the_other_kind_are_refused() {
+    let bench = bench();
+    let at = |name: &str| bench.folder.path().join(name);
+    let line = |x: usize| (0..48).map(|y| format!("{} ", (7 * x + y * y) % 11)).collect::<String>() + "\n";
+    fs::write(at("scan.txt"), (0..48).map(line).collect::<String>()).unwrap();
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("data/examples/probe_loop.csv"), at("loop.csv")).unwrap();
+    let names = |of: &[&[&str]]| -> Vec<String> { of.iter().map(|option| option[0].to_owned()).collect() };
+    let help = stdout(&hysteron(&bench, &["import", "--help"]));
+    assert_eq!(options(&help, "Options for measured loops:"), names(&OF_LOOPS));
+    let others: Vec<String> = options(&help, "Options:");
+    let of_output = ["--out", "--dry-run", "--force", "--json", "--help"];
+    let read: Vec<String> = others.into_iter().filter(|name| !of_output.contains(&name.as_str())).collect();
+    assert_eq!(read, names(&OF_SCANS));
+    let scan = ["scan.txt", "--size", "40um", "--unit", "nm"];
+    let refused = |file: &[&str], option: &[&str], words: &str| {
+        let output = hysteron(&bench, &[&["import", "-n"], file, option].concat());
+        let said = stderr(&output);
+        assert!(code(&output) == 2 && stdout(&output).is_empty(), "{option:?}: {said}");
+        assert!(said.starts_with(&format!("error: cannot import {} as a {words}: ", file[0])), "{said}");
+        assert!(said.contains(option[0]) && said.contains("\nhelp: leave them out"), "{said}");
+    };
+    for option in OF_SCANS {
+        refused(&["loop.csv"], option, "measured loop: options of scans");
+    }
+    for option in OF_LOOPS {
+        // The first names and the columns make any text a loop.
+        let is_loop = ["--loop", "--force-column", "--displacement-column"].contains(&option[0]);
+        if !is_loop {
+            refused(&scan, option, "scan: options of measured loops");
+        }
+        refused(&["scans.zip"], option, "scan: options of measured loops");
+    }
+    assert_eq!(code(&hysteron(&bench, &[&["import", "-n"], &scan[..]].concat())), 0);
+    let all = ["import", "-n", "scan.txt", "--size", "40um", "--unit", "nm", "--probe-radius", "20um", "--modulus", "1e6"];
+    assert!(stderr(&hysteron(&bench, &all)).contains(": --probe-radius, --modulus\n"));
+}
+
+/// A missing file has one message in every format and among several; what is not a file has another one.
+#[test]
+fn reg_missing_files_have_one_message() {
+    let bench = bench();
+    for ending in ["x3p", "zip", "h5", "nc", "npy", "txt", "csv", "sur"] {
+        let name = format!("none.{ending}");
+        let wanted = format!("error: cannot read {name}: no such file\nhelp: check the path\n");
+        for more in [&[][..], &["--loop"]] {
+            let output = hysteron(&bench, &[&["import", &name], more].concat());
+            assert_eq!((code(&output), stderr(&output)), (1, wanted.clone()));
+        }
+    }
+    fs::create_dir(bench.folder.path().join("folder")).unwrap();
+    let folder = hysteron(&bench, &["import", "folder"]);
+    assert!(stderr(&folder).starts_with("error: cannot read folder: not a regular file\nhelp: "), "{}", stderr(&folder));
+    let with = hysteron(&bench, &["import", "scans.zip", "none.x3p", "-n"]);
+    assert!(code(&with) == 3 && stdout(&with).contains("none.x3p: no such file"), "{}{}", stdout(&with), stderr(&with));
+    let none = hysteron(&bench, &["import", "none.x3p", "none.npy"]);
+    assert!(code(&none) == 1 && stderr(&none).contains("none.npy: no such file\nhelp: check the path"), "{}", stderr(&none));
+}
+
 /// Scans of different size: figures in SI units have the columns of the tables, those without a common scale are left out, and so is the table over the cut-off
 /// wavelength. A size that contradicts the file is an error, and so is one force on scans of two sizes.
 #[test]

@@ -198,7 +198,7 @@ fn law_nothing_finished_is_still_a_table() {
     let frame = cases(&rows, &bench.cases).unwrap();
     assert_eq!((frame.row_count(), row(&frame, "loss_mean", 0)), (3, None));
     assert_eq!(curves(&bench.cases, &bench.cycles).unwrap().row_count(), 0);
-    assert!(summary(&frame, None, Shown::All).unwrap().contains("0/6"));
+    assert!(summary(&frame, None, None, Shown::All).unwrap().contains("0/6"));
 }
 
 #[test]
@@ -384,7 +384,7 @@ fn e2e_summary_fits_a_terminal() {
             cycles.push(cycle(&input.case_id, i64::from(realization), &path, 2e-8));
         }
     }
-    let text = summary(&cases(&realizations(&inputs, &cycles).unwrap(), &inputs).unwrap(), None, Shown::All).unwrap();
+    let text = summary(&cases(&realizations(&inputs, &cycles).unwrap(), &inputs).unwrap(), None, None, Shown::All).unwrap();
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     // As the sweep has them.
     let places: Vec<_> = ["ζ=64", "ζ=512", "ζ=128", "ζ=256"].iter().map(|label| text.find(label).unwrap()).collect();

@@ -136,7 +136,7 @@ fn law_means_of_fewer_surfaces_say_how_many() {
     assert_eq!(count("work_loss_j_m2_count"), None);
     let [approach, retraction] = ["work_approach_j_m2", "work_retraction_j_m2"].map(|name| fewer_surfaces(&frame, name, 0).unwrap());
     assert_eq!((approach, retraction, fewer_surfaces(&frame, "loss", 0).unwrap()), (None, Some([1, 2]), None));
-    let text = summary(&frame, None, Shown::All).unwrap();
+    let text = summary(&frame, None, None, Shown::All).unwrap();
     let line = text.lines().find(|line| line.starts_with("  surfaces")).unwrap();
     assert!(line.ends_with(" 1/2") && line.matches('/').count() == 1, "{text}");
     assert!(
@@ -144,7 +144,7 @@ fn law_means_of_fewer_surfaces_say_how_many() {
         "{text}"
     );
     let both = table(&[&works(0.04.into()), &works(0.05.into())], 0.1, of_probe);
-    assert!(!summary(&both, None, Shown::All).unwrap().contains("surfaces"));
+    assert!(!summary(&both, None, None, Shown::All).unwrap().contains("surfaces"));
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn law_no_caution_is_lost_at_the_edge_of_a_terminal() {
     });
     let carried = words(&frame);
     assert!(carried.split('+').count() >= 7, "{carried}");
-    let text = summary(&frame, None, Shown::All).unwrap();
+    let text = summary(&frame, None, None, Shown::All).unwrap();
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     for word in carried.split('+') {
         assert_eq!(text.matches(&format!("warning[{word}]: ")).count(), 1, "{word} in {text}");
@@ -305,8 +305,8 @@ fn law_the_values_of_several_rows_are_an_interval_and_few_rows_are_named() {
     let found = warnings(&frame).unwrap();
     assert_eq!((found.len(), found[0].rows.as_slice()), (1, &[0, 1][..]));
     assert_eq!(found[0].measured, "76 to 87\u{a0}% of contact spots overlap a neighbour (limit 10\u{a0}%)");
-    let text = summary(&frame, None, Shown::All).unwrap();
+    let text = summary(&frame, None, None, Shown::All).unwrap();
     assert!(text.contains("F_max = 0.004") && text.contains("F_max = 0.005") && !text.contains("F_max = 0.006"), "{text}");
-    let all = summary(&with_codes(&frame, &["touching"; 3]), None, Shown::All).unwrap();
+    let all = summary(&with_codes(&frame, &["touching"; 3]), None, None, Shown::All).unwrap();
     assert!(all.contains("warning[touching]: overlap: 5 to 87 % of contact spots overlap") && !all.contains("F_max = 0.004"), "{all}");
 }

@@ -2,7 +2,7 @@
 
 use super::place::{folder, open, open_dir};
 use super::{FAILED, Fault, failed, say};
-use crate::campaign::{Campaign, Explanation, Leftover};
+use crate::campaign::{Audit, Campaign, Explanation, Leftover};
 use crate::cli::{FolderArguments, OutputArguments};
 use crate::stages::undecided;
 use crate::store::Check;
@@ -99,14 +99,30 @@ pub(super) fn verify(asked: &FolderArguments, deep: bool) -> Result<u8, Fault> {
         say(&format!("{}, {}: {compared} compared, ", counts.join(", "), HumanBytes(audit.size_bytes)))?;
         say(&match faults {
             0 => "no fault.\n".to_owned(),
-            faults => format!(
-                "{}. `hysteron run` with the spec repairs its own tasks; remove other files by hand or with \
-                 `hysteron gc`.\n",
-                counted(faults, "fault")
-            ),
+            faults => {
+                format!("{}.\n{}", counted(faults, "fault"), wrapped(&repairs(&audit, &campaign.dir), "  "))
+            }
         })?;
     }
     Ok(if faults == 0 { 0 } else { FAILED })
+}
+
+/// Actions against the faults of an audit, as a paragraph.
+pub(super) fn repairs(audit: &Audit, dir: &Path) -> String {
+    let dir = shell_path(dir);
+    let (left_over, others) = (audit.left_over.len(), audit.unnamed.len() - audit.left_over.len());
+    let is_of_tasks = !(audit.faults.is_empty() && audit.unreceipted.is_empty());
+    let run = is_of_tasks.then(|| format!("`hysteron run {dir}` repairs the tasks of its spec."));
+    let gc = (left_over > 0).then(|| {
+        format!(
+            "`hysteron gc {dir} --delete` deletes {} of earlier runs, and all other results that the spec \
+             does not name; without --delete it lists them.",
+            counted(left_over, "file")
+        )
+    });
+    let by_hand =
+        (others > 0).then(|| format!("Move {} of other origin out of the folder.", counted(others, "file")));
+    [run, gc, by_hand].into_iter().flatten().collect::<Vec<_>>().join(" ")
 }
 
 /// Maximum number of listed names.

@@ -80,7 +80,10 @@ impl<'a> Ended<'a> {
     /// The table of results with verdicts and warnings; with all of them, also the ratios of both methods.
     fn results(&self, warnings: Shown) -> Result<String, Fault> {
         let (cases, methods) = (self.cases()?, self.table(&schema::METHODS)?);
-        let mut text = summary(&cases, Some(&methods), warnings).map_err(failed)?;
+        // Tables of an earlier version of the program have none.
+        let is_there = self.campaign.statistics_path(schema::CUTOFF.name).is_file();
+        let cutoff = is_there.then(|| self.table(&schema::CUTOFF)).transpose()?;
+        let mut text = summary(&cases, Some(&methods), cutoff.as_ref(), warnings).map_err(failed)?;
         let compared = methods_summary(&cases, &methods).map_err(failed)?;
         if warnings == Shown::All && !compared.is_empty() {
             text += &format!("\n{compared}");

@@ -1,5 +1,6 @@
 //! `export`: files that other programs run or publish a campaign with.
 
+use super::care::repairs;
 use super::outputs::{may_replace, written};
 use super::place::{folder, open, open_dir, script_path, spec_file};
 use super::{BAD_SPEC, Fault, failed, make_folder, own_file, say};
@@ -68,11 +69,10 @@ pub(super) fn ro_crate(
     if let Some(fault) = audit.first_fault() {
         return Err(failed(format!(
             "cannot describe {}: {fault}\n\
-             help: `hysteron verify {} --deep` lists all faults; `hysteron run {}` repairs its tasks, \
-             `hysteron gc --delete` removes other files",
+             help: `hysteron verify {} --deep` lists all faults. {}",
             shown(&dir),
             shell_path(&dir),
-            shell_path(&dir)
+            repairs(&audit, &dir)
         )));
     }
     let day: String =

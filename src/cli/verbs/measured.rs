@@ -2,6 +2,7 @@
 //! to other programs.
 
 mod inputs;
+mod kinds;
 mod loops;
 mod quality;
 mod range;
@@ -49,6 +50,9 @@ pub(in crate::cli) const LIMITS: Constants = Constants {
     ],
 };
 
+/// Pixels per cut-off wavelength of the S-filter without `--points`.
+const POINTS: u32 = 8;
+
 pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
     if asked.files.len() > 1 && asked.files.iter().any(|file| loops::is_meant(asked, file)) {
         return loops::import_all(asked);
@@ -57,13 +61,15 @@ pub(super) fn import(asked: &ImportArguments) -> Result<u8, Fault> {
         return several::import(asked);
     }
     let file = &asked.files[0];
-    let refused = |why: &dyn std::fmt::Display| failed(format!("cannot import {}: {why}", file.display()));
-    recognize(file).map_err(|error| refused(&error))?.map_err(|refusal| refused(&refusal))?;
+    recognize(file)
+        .map_err(|error| inputs::unreadable(file, &error))?
+        .map_err(|refusal| failed(format!("cannot import {}: {refusal}", file.display())))?;
     if loops::is_meant(asked, file) { loops::import(asked, file) } else { surface(asked, file) }
 }
 
-/// Checks options for surfaces that no single one shows.
+/// Checks options for surfaces that no single one shows, and that none is for loops.
 fn check_options(asked: &ImportArguments, file: &Path) -> Result<(), Fault> {
+    kinds::no_options_of_loops(asked, file)?;
     let params = params(asked, file)?;
     if params.periodic && params.detrend != Detrend::Mean {
         let shape = params.detrend.word();
@@ -138,12 +144,12 @@ fn params(asked: &ImportArguments, file: &Path) -> Result<MeasuredSurface, Fault
         unit: asked.unit.clone().unwrap_or_default(),
         missing: if asked.fill { Missing::Fill } else { Missing::Refuse },
         detrend: asked.detrend.as_deref().and_then(Detrend::from_word).unwrap_or(default),
-        filter: Filter::from_word(&asked.filter).unwrap_or(Filter::Gaussian),
+        filter: asked.filter.as_deref().and_then(Filter::from_word).unwrap_or(Filter::Gaussian),
         outliers: asked.outliers,
         align_rows: asked.align_rows,
         fast_axis: asked.fast_axis.as_deref().and_then(FastAxis::from_word).unwrap_or(FastAxis::Auto),
         tip_radius_m: asked.tip_radius.unwrap_or_default(),
-        points_per_shortest_wavelength: u32::from(asked.points),
+        points_per_shortest_wavelength: asked.points.map_or(POINTS, u32::from),
     })
 }
 

@@ -10,7 +10,7 @@ use crate::citation::bibtex;
 use crate::cli::FolderArguments;
 use crate::model::{GeneratedSurface, SurfaceSource};
 use crate::schema::{self, Table};
-use crate::spec::{CaseParams, GENERATED, MEASURED, NAMES, REPLACED, WHERE_USED};
+use crate::spec::{CaseParams, GENERATED, MEASURED, NAMES, OF_ASPERITIES, REPLACED, WHERE_USED};
 use crate::stages::cycle_results;
 use crate::stats::{self, Given, grid_help, grid_percent, grid_verdict, significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
@@ -57,6 +57,8 @@ struct Shown {
     kind: &'static str,
     state: String,
     parameters: Map<String, Value>,
+    /// Sentences on the parameters.
+    notes: Vec<String>,
     /// Rows of a table of statistics.
     results: Vec<Map<String, Value>>,
     /// Dissipated energy with its errors, of each of these rows that has them.
@@ -143,6 +145,7 @@ fn of_case(campaign: &Campaign, place: usize, case: &CaseUnit) -> Result<Shown, 
         kind: "case",
         state: format!("{done}; in sweep {}", case.case.sweeps.join(", ")),
         parameters: parameters(&case.case.params),
+        notes: notes(&case.case.params),
         tasks,
         ..found
     })
@@ -169,6 +172,7 @@ fn of_coarser_grid(
         kind: "coarser grid",
         state: format!("{done}; for the grid error of case {}", finest.join(", ")),
         parameters: parameters(&unit.case.params),
+        notes: notes(&unit.case.params),
         results,
         tasks,
         ..Shown::default()
@@ -194,6 +198,7 @@ fn of_cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Shown, Fault> {
         kind: Stage::Cycle.word(),
         state: format!("{}; {of} {}, surface {}", state(&standing), case.id, surface.id),
         parameters: parameters(&case.case.params),
+        notes: notes(&case.case.params),
         results,
         files: files(campaign, &unit.cycle()),
         ..Shown::default()
@@ -230,14 +235,34 @@ fn files(campaign: &Campaign, unit: &Unit<'_>) -> Vec<Kept> {
     }
 }
 
-/// The parameters of a case as keys of a spec.
+/// The parameters of a case as keys of a spec, without keys that its method does not read.
 fn parameters(params: &CaseParams) -> Map<String, Value> {
     let mut all = Map::new();
     if let Value::Object(tables) = json!(params) {
         tables.iter().for_each(|(table, values)| flatten(table, values, &mut all));
     }
     keep_own(&params.surface, &mut all);
+    let is_by_elements = params.elements().is_some();
+    all.retain(|key, _| match key.split_once('.') {
+        Some(("model", name)) => !(is_by_elements && OF_ASPERITIES.contains(&name)),
+        Some(("boundary_elements", _)) => is_by_elements,
+        _ => true,
+    });
     all
+}
+
+/// Boundary condition of boundary elements, which read no `model.boundary`.
+fn notes(params: &CaseParams) -> Vec<String> {
+    if params.elements().is_none() {
+        return Vec::new();
+    }
+    let others = OF_ASPERITIES.map(|name| format!("model.{name}")).join(", ");
+    let boundary = match (params.surface.is_periodic(), params.probe) {
+        (true, _) => "The surface is continued periodically.",
+        (false, None) => "The scan is not periodic: its mirror images continue it to a periodic surface.",
+        (false, Some(_)) => "The scan is not periodic, and on a probe it is not mirrored.",
+    };
+    vec![format!("Not read by boundary elements: {others}."), boundary.to_owned()]
 }
 
 /// Removes the keys of a measured surface from those of a generated one, and the other way round. Keys that
@@ -303,10 +328,10 @@ fn given(max_load: f64, columns: Given) -> Map<String, Value> {
 
 fn answer(id: &str, found: &Shown) -> Value {
     let tasks: Vec<_> = found.tasks.iter().map(|(id, state)| json!({ "id": id, "state": state })).collect();
-    let Shown { kind, state, parameters, results, verdicts, warnings, files, .. } = found;
+    let Shown { kind, state, parameters, notes, results, verdicts, warnings, files, .. } = found;
     json!({
-        "id": id, "kind": kind, "state": state, "parameters": parameters, "results": results,
-        "verdicts": verdicts, "warnings": warnings, "tasks": tasks, "files": files,
+        "id": id, "kind": kind, "state": state, "parameters": parameters, "notes": notes,
+        "results": results, "verdicts": verdicts, "warnings": warnings, "tasks": tasks, "files": files,
     })
 }
 
@@ -319,6 +344,7 @@ fn described(id: &str, found: &Shown) -> String {
         }
     };
     section("Parameters", found.parameters.iter().map(|(key, value)| format!("{key} = {value}")).collect());
+    section("Notes", found.notes.clone());
     for row in &found.results {
         let load = row.get("max_load").map(ToString::to_string).unwrap_or_default();
         section(

@@ -222,18 +222,18 @@ pub fn dalvi_loss(material: &Material, area_m2: f64) -> f64 {
     material.work_of_adhesion_j_m2 * area_m2
 }
 
-/// Prefactor k of the work of adhesion of an advancing and a receding contact line, `Δγ ∓ k e_el`.
+/// Prefactor k of the work of adhesion of an advancing and a receding contact line, `Δγ ∓ k U_el`.
 const PINNING: f64 = 1.35;
 
-/// Energy dissipated by crack-front pinning, `2 k e_el A` with k = 1.35 \[J\].
+/// Energy dissipated by crack-front pinning, `2 k U_el A` with k = 1.35 \[J\].
 ///
-/// `A` is the contact area \[m²\], and `e_el` \[J/m²\] is the elastic energy per area of flattening the
-/// roughness. `None` if `k e_el ≥ Δγ/2`.
+/// `A` is the contact area \[m²\], and `U_el` \[J/m²\] is the elastic energy per area of flattening the
+/// roughness. `None` if `k U_el ≥ Δγ/2`.
 ///
 /// Roughness makes the work of adhesion along a contact line random, with the standard deviation
-/// `2 sqrt(Δγ e_el)`. The line is elastic, with a stiffness that decreases with the wavelength. Collective
+/// `2 sqrt(Δγ U_el)`. The line is elastic, with a stiffness that decreases with the wavelength. Collective
 /// pinning changes the apparent work of adhesion in proportion to the variance. An advancing contact has
-/// `Δγ − k e_el`, a receding one `Δγ + k e_el`. The proportionality is from Sanner, Kumar, Dhinojwala, Jacobs
+/// `Δγ − k U_el`, a receding one `Δγ + k U_el`. The proportionality is from Sanner, Kumar, Dhinojwala, Jacobs
 /// and Pastewka, Sci. Adv. 10:eadl1277 (2024). The prefactor is from our simulations: lines of 512 to 1024
 /// points in weak fields, driven slowly, with H = 0.8, gave 1.2 to 1.5. One connected contact with weak
 /// roughness is assumed.
@@ -243,7 +243,7 @@ pub fn pinning_loss(material: &Material, elastic_energy_j_m2: f64, area_m2: f64)
     (shift < 0.5 * material.work_of_adhesion_j_m2).then_some(2.0 * shift * area_m2)
 }
 
-/// Wang and Müser's stickiness parameter `e_el/(2Δγ)`, from Persson and Tosatti's ratio `e_el/Δγ`.
+/// Wang and Müser's stickiness parameter `U_el/(2Δγ)`, from Persson and Tosatti's ratio `U_el/Δγ`.
 ///
 /// Below 1 the pull-off force of a flat rough contact is high.
 /// Wang and Müser, Front. Mech. Eng. 8:965584 (2022).

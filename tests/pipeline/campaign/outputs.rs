@@ -187,6 +187,37 @@ fn e2e_gc_deletes_only_what_the_program_wrote() {
     assert!(stdout(&bench.look("gc", &[])).contains("Nothing is left over"));
 }
 
+/// Figures of an earlier report are faults, and the help names the command that removes them: `gc --delete`, and not `run`, which has nothing to do.
+#[test]
+fn e2e_the_help_of_a_fault_repairs_it() {
+    let (bench, _) = finished();
+    fs::write(bench.spec(), format!("{SMALL}[figures]\nformat = [\"svg\"]\n[[sweep]]\nname = \"b\"\nsurface.hurst = [0.7]\n")).unwrap();
+    assert_eq!(code(&bench.verb("run", &["-q"])), 0);
+    let words = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let verified = bench.look("verify", &[]);
+    let said = words(stdout(&verified));
+    let gc = format!("`hysteron gc {} --delete` deletes ", bench.out().display());
+    assert!(code(&verified) == 1 && said.contains("figures/base_A.svg") && said.contains(&gc), "{said}");
+    assert!(!said.contains("hysteron run") && !said.contains("other origin"), "{said}");
+    assert!(stdout(&bench.verb("run", &[])).contains("Nothing to do"));
+    let answer: serde_json::Value = serde_json::from_str(&stdout(&bench.look("verify", &["--json"]))).unwrap();
+    assert_eq!(answer["left_over"], answer["unnamed"]);
+    let crate_of = || program(&bench, &["export", "ro-crate", "out"]);
+    assert!(stderr(&crate_of()).contains("`hysteron gc out --delete` deletes "), "{}", stderr(&crate_of()));
+    // A file of the user is not deleted; a damaged file is repaired by the run.
+    fs::write(bench.out().join("figures/mine_A.svg"), "mine").unwrap();
+    fs::write(bench.out().join("statistics/cases.parquet"), "damaged").unwrap();
+    let said = words(stdout(&bench.look("verify", &[])));
+    assert!(said.contains("`hysteron run ") && said.contains(&gc) && said.contains("Move 1 file of other origin out"), "{said}");
+    assert_eq!(code(&bench.verb("run", &["-q"])), 0);
+    assert_eq!(code(&bench.look("gc", &["--delete"])), 0);
+    let said = words(stdout(&bench.look("verify", &[])));
+    assert!(said.contains("1 fault. Move 1 file of other origin out of the folder.") && !said.contains("hysteron "), "{said}");
+    fs::remove_file(bench.out().join("figures/mine_A.svg")).unwrap();
+    assert!(whole(&bench));
+    assert_eq!(code(&crate_of()), 0);
+}
+
 #[test]
 fn e2e_options_that_replace_the_job_are_refused() {
     let bench = Bench::new(SMALL);

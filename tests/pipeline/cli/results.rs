@@ -208,6 +208,38 @@ fn e2e_show_lists_the_keys_of_the_kind_of_surface() {
     assert!(shown.contains("surface.hurst = ") && !shown.contains("surface.unit") && !shown.contains("surface.detrend"), "{shown}");
 }
 
+/// Boundary elements read no `model.boundary`: `show` leaves it out, with the others, and states how a scan is continued.
+#[test]
+fn e2e_show_lists_the_keys_of_the_method() {
+    let spec = |probe: &str| {
+        format!(
+            "name = \"measured\"\nsurface.file = \"scan.npy\"\nsurface.pixel_m = 12.5e-9\nsurface.unit = \"nm\"\nmodel.boundary = \"isolated\"\n\
+             model.method = \"boundary_elements\"\nboundary_elements.points = 256\ncycle.max_load = [0.001]\n{probe}"
+        )
+    };
+    let of_cycle = |spec: &str| {
+        let bench = Bench::new(spec);
+        fs::write(bench.folder.path().join("scan.npy"), bytes(&part())).unwrap();
+        let run = bench.verb("run", &["--until", "extract"]);
+        assert_eq!(code(&run), 0, "{}", stderr(&run));
+        let plan: serde_json::Value = serde_json::from_slice(&bench.verb("plan", &["--json"]).stdout).unwrap();
+        let id = plan["stages"][2]["units"][0]["id"].as_str().unwrap().to_owned();
+        let answer: serde_json::Value = serde_json::from_slice(&bench.look("show", &[&id, "--json"]).stdout).unwrap();
+        (stdout(&bench.look("show", &[&id])), answer)
+    };
+    let (shown, answer) = of_cycle(&spec(""));
+    assert!(!shown.contains("model.boundary = ") && shown.contains("model.method = \"boundary_elements\""), "{shown}");
+    assert!(shown.contains("boundary_elements.points = 256") && shown.contains("its mirror images continue it"), "{shown}");
+    assert!(shown.contains("Not read by boundary elements: model.interaction, model.boundary,"), "{shown}");
+    assert!(answer["parameters"].get("model.boundary").is_none() && answer["notes"].as_array().unwrap().len() == 2, "{answer:#}");
+    let (on_probe, _) = of_cycle(&spec("probe.radius_m = 1e-6\n"));
+    assert!(on_probe.contains("on a probe it is not mirrored"), "{on_probe}");
+    let asperities = spec("model.jump_in = \"jkr\"\n").replace("\"boundary_elements\"", "\"asperities\"");
+    let (shown, answer) = of_cycle(&asperities);
+    assert!(shown.contains("model.boundary = \"isolated\"") && !shown.contains("boundary_elements."), "{shown}");
+    assert!(answer["notes"].as_array().unwrap().is_empty());
+}
+
 #[test]
 fn e2e_show_prints_cases_and_tasks() {
     let bench = Bench::new(SMALL);

@@ -1,7 +1,7 @@
 //! The JSON Schema of specs and the reference page: complete, and in agreement with the reader of specs.
 
 use hysteron::lengths::{LENGTH_PATTERN, metres};
-use hysteron::spec::{CaseParams, json_schema, reference};
+use hysteron::spec::{CaseParams, OF_ASPERITIES, Spec, json_schema, reference};
 use serde_json::Value;
 
 use super::{accepted, specs};
@@ -156,4 +156,31 @@ fn law_every_key_is_in_the_schema_and_on_the_page() {
     for line in page.lines() {
         assert!(line.chars().count() <= 100, "{line}");
     }
+}
+
+/// The page names every table that a sweep may override.
+#[test]
+fn law_the_page_names_the_tables_of_a_sweep() {
+    let (root, page) = (root(), reference());
+    let part = page.split("\n## `[[sweep]]`\n").nth(1).unwrap().split("```").next().unwrap();
+    let keys = root["properties"]["sweep"]["items"]["properties"].as_object().unwrap();
+    let tables: Vec<&String> = keys.keys().filter(|key| !["name", "zip"].contains(&key.as_str())).collect();
+    assert!(tables.len() >= 8 && tables.iter().all(|table| part.contains(&format!("`[{table}]`"))), "{tables:?}: {part}");
+    assert_eq!(part.matches("`[").count(), tables.len(), "{part}");
+}
+
+/// The keys of `[model]` that the asperity model alone reads: with boundary elements they change no case.
+#[test]
+fn law_boundary_elements_read_no_key_of_the_asperity_model() {
+    let tables = serde_json::to_value(CaseParams::default()).unwrap();
+    let others = ["as_printed", "method"];
+    let read: Vec<&String> = tables["model"].as_object().unwrap().keys().filter(|key| !others.contains(&key.as_str())).collect();
+    assert!(read.len() == OF_ASPERITIES.len() && read.iter().all(|key| OF_ASPERITIES.contains(&key.as_str())), "{read:?}");
+    let cases = |more: &str| {
+        let spec =
+            format!("name = \"x\"\nmodel.method = \"boundary_elements\"\nboundary_elements.points = 64\nsurface.magnification = 8\n{more}");
+        Spec::parse(&spec, "x").unwrap().cases
+    };
+    let keys = "model.interaction = \"point\"\nmodel.coalescence = \"none\"\nmodel.jump_in = \"jkr\"\nmodel.allow_low_tabor = true\n";
+    assert_eq!(cases(keys), cases(""));
 }

@@ -8,6 +8,7 @@ use crate::model::MeasuredSurface;
 use crate::store::container::{Container, Member};
 use crate::store::scan::is_line_scan;
 use crate::text::shown;
+use std::io;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -57,7 +58,7 @@ pub(super) fn inputs(asked: &ImportArguments, work: &TempDir) -> Result<Inputs, 
                 }
             }
             Ok(None) => match recognize(file) {
-                Err(error) => fails(error.to_string()),
+                Err(error) => fails(reason(&error)),
                 Ok(Err(refusal)) => fails(refusal.to_string()),
                 Ok(Ok(Found::Scan(Format::NetCdf3))) if is_line_scan(file) => {
                     left.push(Left { label: shown(file), why: LINE.to_owned(), is_failure: false });
@@ -73,6 +74,19 @@ pub(super) fn inputs(asked: &ImportArguments, work: &TempDir) -> Result<Inputs, 
         }
     }
     Ok((found, left, notes))
+}
+
+/// The reason of an error of the system, with help.
+fn reason(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "no such file\nhelp: check the path".to_owned(),
+        _ => format!("{error}\nhelp: check the path and the permissions of the file"),
+    }
+}
+
+/// The error of a file that is missing or cannot be read.
+pub(super) fn unreadable(file: &Path, error: &io::Error) -> Fault {
+    failed(format!("cannot read {}: {}", shown(file), reason(error)))
 }
 
 /// A measurement of a container as a file.

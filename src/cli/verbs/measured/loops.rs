@@ -2,10 +2,12 @@
 
 use super::super::outputs::may_be_written;
 use super::super::{FAILED_CASES, Fault, failed, make_folder, say};
+use super::inputs::unreadable;
+use super::kinds::no_options_of_scans;
 use crate::cli::ImportArguments;
+use crate::formats::is_regular;
 use crate::lengths::sizes;
 use crate::model::{Baseline, Choice as _, Compression, LoopOptions};
-
 use crate::stages::{Estimate, MeasuredLoop, half_width, measure_loop};
 use crate::stats::significant;
 use crate::store::force_curve::is_force_curve;
@@ -22,6 +24,7 @@ pub(super) fn is_meant(asked: &ImportArguments, file: &Path) -> bool {
 
 /// Evaluates a loop.
 pub(super) fn import(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> {
+    no_options_of_scans(asked, file)?;
     let out = asked.out.clone().unwrap_or_else(|| named_after(file));
     let found = evaluated(asked, file, &out)?;
     let written = (!asked.dry_run).then_some(out.as_path());
@@ -35,8 +38,8 @@ pub(super) fn import(asked: &ImportArguments, file: &Path) -> Result<u8, Fault> 
 
 /// Evaluates several loops, each with a table of its own, and names the loops that fail.
 pub(super) fn import_all(asked: &ImportArguments) -> Result<u8, Fault> {
-    if let Some(missing) = asked.files.iter().find(|file| !file.exists()) {
-        return Err(failed(format!("cannot read {}: no such file\nhelp: check the path", shown(missing))));
+    for file in &asked.files {
+        is_regular(file).map_err(|error| unreadable(file, &error))?;
     }
     let others: Vec<String> =
         asked.files.iter().filter(|file| !is_meant(asked, file)).map(|file| shown(file)).collect();
@@ -48,6 +51,7 @@ pub(super) fn import_all(asked: &ImportArguments) -> Result<u8, Fault> {
             if others.len() == 1 { "has" } else { "have" }
         )));
     }
+    no_options_of_scans(asked, &asked.files[0])?;
     let outs = tables(asked)?;
     if let Some(folder) = asked.out.as_ref().filter(|_| !asked.dry_run) {
         make_folder(folder)?;

@@ -68,11 +68,11 @@ impl<'a> Range<'a> {
         let [whole, octave] = limits();
         let octave = if self.octave_m > 0.0 { format!(" and U_1/Δγ ≥ {octave}") } else { String::new() };
         format!(
-            "U_el/Δγ ≥ {whole}{octave}, that is E*/Δγ ≥ {:.2e} 1/m. U_el = E* x {:.3e} m, elsewhere called \
-             e_el, flattens all roughness, U_1 = E* x {:.3e} m its shortest octave (wavelengths up to {:.3e} \
-             m). A softer or more adhesive contact is outside the range of the asperity model: use method = \
-             \"boundary_elements\" or \"auto\". Below E*/Δγ = {:.2e} 1/m adhesion flattens the whole \
-             surface.",
+            "U_el/Δγ ≥ {whole}{octave}, that is E*/Δγ ≥ {:.2e} 1/m. U_el = E* x {:.3e} m is the \
+             energy per area that flattens all roughness, U_1 = E* x {:.3e} m that of its shortest octave \
+             (wavelengths up to {:.3e} m). A softer or more adhesive contact is outside the range of the \
+             asperity model: use method = \"boundary_elements\" or \"auto\". Below E*/Δγ = {:.2e} 1/m \
+             adhesion flattens the whole surface.",
             self.least_1_m(),
             self.whole_m,
             self.octave_m,

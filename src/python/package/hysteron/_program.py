@@ -93,7 +93,7 @@ def take(
     fill: bool = False,
     detrend: str | None = None,
     periodic: bool = False,
-    points: int = 8,
+    points: int | None = None,
     filter: str | None = None,
     outliers: bool = False,
     align_rows: bool = False,
@@ -130,8 +130,8 @@ def take(
         Levelling: mean, plane (default) or quadratic; mean only for a periodic surface.
     periodic : bool
         True for a periodic surface.
-    points : int
-        S-filter cut-off in pixels.
+    points : int, optional
+        S-filter cut-off in pixels; default 8.
     filter : str, optional
         S-filter: gaussian (default, ISO 16610-61) or sharp.
     outliers : bool
@@ -151,8 +151,8 @@ def take(
         Output of `hysteron import --json`.
     """
     told = {"dataset": dataset, "pixel-m": pixel_m, "size": size, "unit": unit, "skip-lines": skip_lines, "width": width}
-    told |= {"detrend": detrend, "filter": filter}
-    command = [str(find()), "import", "--json", f"--points={points}"]
+    told |= {"detrend": detrend, "filter": filter, "points": points}
+    command = [str(find()), "import", "--json"]
     command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}"]
     told |= {"fast-axis": fast_axis, "tip-radius": tip_radius_m}
     command += [f"--{name}={value}" for name, value in told.items() if value is not None]
