@@ -226,9 +226,12 @@ pub(super) fn read_by_cycle(params: &CaseParams) -> CaseParams {
 /// surfaces have none.
 const READING_VERSION: u32 = 2;
 
-/// Version of the cycles by boundary elements of one load on a periodic surface, whose results later versions
-/// have not changed.
+/// Version of the cycles by boundary elements of one load on a periodic surface with the plain law, whose
+/// results later versions have not changed.
 pub(crate) const ELEMENTS_VERSION: u32 = 10;
+
+/// Version of all other cycles with the plain law, as above.
+const PLAIN_VERSION: u32 = 11;
 
 /// Present version of the asperity model.
 pub(crate) const fn asperities_version() -> u32 {
@@ -253,9 +256,13 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
             model.1["method_version"] = json!(asperities_version());
             vec![material, model, cycle]
         }
-        MethodOptions::Elements(_) => {
+        MethodOptions::Elements(options) => {
             let is_first = params.surface.is_periodic() && params.cycle.max_load.len() == 1;
-            let version = if is_first { ELEMENTS_VERSION } else { present(Elements::VERSIONS) };
+            let version = match options.law {
+                FrontLaw::Corrected => present(Elements::VERSIONS),
+                FrontLaw::Plain if is_first => ELEMENTS_VERSION,
+                FrontLaw::Plain => PLAIN_VERSION,
+            };
             model.1 = json!({ "method": model.1["method"], "method_version": version });
             remove(&mut cycle.1, "approach_step");
             vec![material, model, elements, cycle]

@@ -65,6 +65,7 @@ const VERSIONS: &[(u32, &str)] = &[
         "loads are searched off the path and do not change one another; area of the scan without its mirror \
          images. One load on a periodic surface: as 10",
     ),
+    (12, "step of the line tension ahead of the front. Plain law: as 11"),
 ];
 
 /// A surface that boundary elements load and unload.

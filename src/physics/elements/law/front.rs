@@ -60,8 +60,8 @@ impl Front {
         is_hard: false,
         ends_at_front: false,
         line: 0.0,
-        line_reach: 1.4,
-        line_place: 0.7,
+        line_reach: 1.2,
+        line_place: 0.3,
         is_emphasised: false,
     };
 
