@@ -4,13 +4,15 @@
 //! `boundary_elements.points = [64, 128, 256]` outside of sweeps lists them, or `points_per_wavelength = [4,
 //! 8, 16]`: the finest grid gives the result. Each coarser grid is a case of its own, in the sweep
 //! [`COARSER`] alone, with the same surfaces. `boundary_elements.error` begins with three grids and adds
-//! finer ones, see [`Spec::refined`].
+//! finer ones, see [`Spec::refined`]. With `boundary_elements.shifted_copies` the coarsest grid is repeated
+//! with shifted points, as further cases of that sweep.
 
 use std::ops::Range;
 
 use toml::de::DeValue;
 
 use super::cases::Cases;
+use super::elements::latest;
 use super::fault::Faults;
 use super::keys::{KEYS, Key, find};
 use super::number::short;
@@ -33,6 +35,9 @@ pub(super) const CHOICES: [&str; 3] = [LISTS[0], LISTS[1], ERROR];
 /// The key of a required grid error.
 pub(super) const ERROR: &str = "boundary_elements.error";
 
+/// The key of the number of shifted copies.
+const COPIES: &str = "boundary_elements.shifted_copies";
+
 /// Points per shortest wavelength of the first grids for a required grid error.
 const FIRST: [u32; 3] = [4, 8, 16];
 
@@ -46,10 +51,16 @@ pub(super) const MOST: usize = 6;
 pub(super) type Coarser = (u32, Range<usize>);
 
 impl Case {
-    /// True if the case is only a coarser grid of others.
+    /// True if the case is only a coarser grid of others, or a shifted copy of it.
     #[must_use]
     pub fn is_coarser_grid(&self) -> bool {
         self.sweeps == [COARSER]
+    }
+
+    /// True if the case is a shifted copy of a coarser grid.
+    #[must_use]
+    pub fn is_shifted_copy(&self) -> bool {
+        self.params.elements().is_some_and(|options| options.shift != 0.0)
     }
 }
 
@@ -70,13 +81,22 @@ impl CaseParams {
         params
     }
 
-    /// The parameters of a case by boundary elements without its number of grid points; nothing for other
-    /// methods.
+    /// The parameters on a grid of boundary elements that is shifted by a part of its spacing.
+    pub(super) fn shifted(&self, shift: f64) -> Self {
+        let mut params = self.clone();
+        if let MethodOptions::Elements(options) = &mut params.method {
+            options.shift = shift;
+        }
+        params
+    }
+
+    /// The parameters of a case by boundary elements without its number of grid points and their shift;
+    /// nothing for other methods.
     #[must_use]
     pub fn on_any_grid(&self) -> Option<Self> {
         let mut params = self.clone();
         let MethodOptions::Elements(options) = &mut params.method else { return None };
-        (options.points, options.per_wavelength) = (None, None);
+        (options.points, options.per_wavelength, options.shift) = (None, None, 0.0);
         Some(params)
     }
 }
@@ -149,7 +169,7 @@ pub(super) fn clear_others(chosen: usize, others: &[&str], values: &mut Values, 
 
 /// Refuses a key of a sweep that holds for all cases; true if it is one.
 pub(super) fn refuses_sweep(key: &Key, at: &Range<usize>, faults: &mut Faults<'_>) -> bool {
-    let refuses = [ERROR, "boundary_elements.max_points"].contains(&key.path);
+    let refuses = [ERROR, COPIES, "boundary_elements.max_points"].contains(&key.path);
     if refuses {
         let message = format!("`{}` cannot be swept: it holds for all cases", key.path);
         faults.add(at, message, "move it out of the [[sweep]]".to_owned());
@@ -171,6 +191,43 @@ pub(super) fn check_choice(values: &Values, origins: &[Origin], faults: &mut Fau
     if let (Some(small), Some(span)) = (values.goal.error.filter(|of| *of < SMALLEST), at(ERROR)) {
         let message = format!("`{ERROR}` is {}: the smallest estimate is {SMALLEST}", short(small));
         faults.add(&span, message, "write a larger error, such as 0.05 for 5 %".to_owned());
+    }
+}
+
+/// Shifted copies of a case on the coarsest grid: by k/(n + 1) of its spacing, k = 1 to n.
+pub(super) fn copies(coarsest: &CaseParams, count: u32) -> Vec<CaseParams> {
+    (1..=count).map(|k| coarsest.shifted(f64::from(k) / f64::from(count + 1))).collect()
+}
+
+/// Checks the requirements of shifted copies on a case and on its grids.
+pub(super) fn check_copies(
+    case: &CaseParams,
+    values: &Values,
+    (origins, is_listed): (&[Origin], bool),
+    faults: &mut Faults<'_>,
+) {
+    let [points, number, error] = CHOICES;
+    let span = written(place(COPIES), origins).filter(|_| values.goal.shifted_copies > 0);
+    // A faulty choice of the grids is refused by itself.
+    let is_known = latest(&[COPIES, points, number, error], origins).is_some();
+    let Some(span) = span.filter(|_| is_known) else { return };
+    let mut refuse = |problem: &str, help: &str| {
+        faults.add(&span, format!("`{COPIES}` needs {problem}"), help.to_owned());
+    };
+    if !is_listed && values.goal.error.is_none() {
+        refuse(
+            "a list of grids: the coarsest one is shifted",
+            "add points = [64, 128, 256], or error = 0.05",
+        );
+    }
+    if case.elements().is_some() && !case.surface.is_periodic() {
+        refuse(
+            "periodic surfaces: on a shifted grid the mirror images of this one are none",
+            "remove the key, or use surface.periodic = true with a periodic scan",
+        );
+    }
+    if case.elements().is_some() && case.probe.is_some() {
+        refuse("surfaces without a probe, which is not periodic", "remove the key, or probe.radius_m");
     }
 }
 

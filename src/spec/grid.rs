@@ -49,6 +49,8 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             let first = coarser::first_grids(&mut values, origins, faults);
             let params = values.case();
             check(&params, &values, (origins, swept), faults);
+            let is_listed = !coarser_grids.is_empty();
+            coarser::check_copies(&params, &values, (origins, is_listed), faults);
             let grids = if values.goal.error.is_some() { &first } else { &coarser_grids };
             coarser.extend(on_coarser(grids, &values, (origins, swept), faults));
             let case = cases.add(&[sweep.to_owned()], params);
@@ -201,7 +203,7 @@ fn complete(values: &mut Values, origins: &[Origin]) {
     }
 }
 
-/// The cases of a case on coarser grids; none where a sweep sets the grid, and for asperities.
+/// The cases of a case on coarser grids, with shifted copies of the coarsest one; none where a sweep sets the grid, and for asperities.
 fn on_coarser(
     grids: &[Coarser],
     values: &Values,
@@ -225,6 +227,8 @@ fn on_coarser(
             found.push(params);
         }
     }
+    let copies = found.first().map(|coarsest| coarser::copies(coarsest, values.goal.shifted_copies));
+    found.extend(copies.into_iter().flatten());
     found
 }
 
