@@ -222,7 +222,7 @@ pub(super) fn check_copies(
     }
     if case.elements().is_some() && !case.surface.is_periodic() {
         refuse(
-            "periodic surfaces: on a shifted grid the mirror images of this one are none",
+            "periodic surfaces: mirror images cannot be shifted",
             "remove the key, or use surface.periodic = true with a periodic scan",
         );
     }

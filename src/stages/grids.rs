@@ -57,5 +57,5 @@ pub(super) fn grids(
         let of = OfGrids { case_id: ids[row], max_load: max_loads[row], label: &label };
         panels.extend(over_grids(&table, &of, panels.len() + 1)?);
     }
-    Ok(Some(Grids { table, panels, failures }))
+    Ok(Some(Grids { table, panels, shifted_copies: campaign.spec.base.goal.shifted_copies, failures }))
 }
