@@ -33,7 +33,7 @@ pub struct GridSeries<'a> {
     pub values: &'a [f64],
     /// Values on one coarser grid and on its shifted copies; empty without copies.
     pub copies: &'a [f64],
-    /// Spacing of that grid over the spacing of the finest grid.
+    /// Spacing of that grid over the spacing of the finest grid; not a number without copies.
     pub refinement: f64,
 }
 

@@ -64,6 +64,7 @@ fn law_scatter_of_shifted_copies_is_added_in_squares() {
     let found = grid_error(&[16.0, 32.0, 64.0], &[2.4, 2.2, 2.1]).unwrap();
     for same in [&[][..], &[2.5], &[2.5, 2.5, 2.5]] {
         assert_eq!(found.with_scatter(same, 4.0), found);
+        assert_eq!(found.with_scatter(same, f64::NAN), found);
     }
     // Deviations -0.1, 0 and 0.1 of three values: s = 0.1.
     let with = found.with_scatter(&[2.4, 2.5, 2.6], 4.0);

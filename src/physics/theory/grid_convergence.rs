@@ -68,12 +68,12 @@ impl GridError {
     /// *Assumption:* the scatter is of first order in the grid spacing.
     #[must_use]
     pub fn with_scatter(self, copies: &[f64], refinement: f64) -> Self {
-        let scatter = COVERAGE * deviation(copies) / refinement;
-        if scatter == 0.0 {
+        let deviation = deviation(copies);
+        if deviation == 0.0 {
             return self;
         }
         let finest = self.absolute / self.relative;
-        let absolute = self.absolute.hypot(scatter);
+        let absolute = self.absolute.hypot(COVERAGE * deviation / refinement);
         Self { relative: absolute / finest, absolute, ..self }
     }
 }
