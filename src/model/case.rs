@@ -137,8 +137,8 @@ pub struct ElementOptions {
     pub points: Option<u32>,
     /// Grid points per shortest wavelength of a measured surface, at least; nothing for the automatic number.
     pub per_wavelength: Option<u32>,
-    /// Shift of the grid along rows and columns, as a part of its spacing; 0 but for shifted copies of coarser
-    /// grids.
+    /// Shift of the grid along rows and columns, as a part of its spacing; 0 but for shifted copies of
+    /// coarser grids.
     pub shift: f64,
     /// Attraction between the surfaces.
     pub attraction: Attraction,

@@ -203,7 +203,8 @@ fn complete(values: &mut Values, origins: &[Origin]) {
     }
 }
 
-/// The cases of a case on coarser grids, with shifted copies of the coarsest one; none where a sweep sets the grid, and for asperities.
+/// The cases of a case on coarser grids, with shifted copies of the coarsest one; none where a sweep sets the
+/// grid, and for asperities.
 fn on_coarser(
     grids: &[Coarser],
     values: &Values,

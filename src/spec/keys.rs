@@ -341,9 +341,9 @@ pub(super) static KEYS: &[Key] = &[
     key!(boundary_elements.max_points in goal.max_points, "", "Maximum number of grid points along a side \
          with `error`."; count 16 to 4096, &[],
         "grid points along a side, at most, with error; default 1024"),
-    key!(boundary_elements.shifted_copies in goal.shifted_copies, "", "Copies of the coarsest grid of a list, \
-         or of `error`, with its points shifted by parts of its spacing. The scatter of their results is part \
-         of the grid error. For periodic surfaces without a probe."; count 0 to 8, &[],
+    key!(boundary_elements.shifted_copies in goal.shifted_copies, "", "Copies of the coarsest grid of a \
+         list, or of `error`, with its points shifted by parts of its spacing. The scatter of their results \
+         is part of the grid error. For periodic surfaces without a probe."; count 0 to 8, &[],
         "shifted copies of the coarsest grid, for the grid error; default 0, useful 3"),
     key!(boundary_elements.attraction in attraction, "", "Attraction between the surfaces.";
         word AttractionKind),

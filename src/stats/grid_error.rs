@@ -5,8 +5,8 @@
 //! the means over the surfaces that all grids have: there, events that single surfaces skip on one grid
 //! average out.
 //!
-//! Shifted copies of a grid are no grids of a series. The standard deviation of their values is the scatter by
-//! the position of the grid, which is part of the error.
+//! Shifted copies of a grid are no grids of a series. The standard deviation of their values is the scatter
+//! by the position of the grid, which is part of the error.
 
 use super::cautions::{GRID_ERROR, with_code};
 use super::rows::Rows;

@@ -31,8 +31,8 @@ pub struct Options {
     /// 0: those of [`points_for`](super::points_for). Twice as many take 5 to 8 times as long; Θ changes by 9
     /// to 25 % from 8 to 16 per shortest wavelength.
     pub points: usize,
-    /// Place of the first point along rows and columns, as a part of the grid spacing. It is read for periodic
-    /// surfaces without a probe, of which another grid is another sample of the same surface.
+    /// Place of the first point along rows and columns, as a part of the grid spacing. It is read for
+    /// periodic surfaces without a probe, of which another grid is another sample of the same surface.
     pub shift: f64,
     /// Attraction.
     pub attraction: Attraction,

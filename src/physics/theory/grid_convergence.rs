@@ -62,8 +62,8 @@ pub struct GridError {
 
 impl GridError {
     /// The error with the scatter by the position of the grid, added in squares: `2 s/r`, with the standard
-    /// deviation s of the values on one coarser grid and on its shifted copies, and the ratio r of its spacing
-    /// to that of the finest grid. Fewer than two values have no scatter.
+    /// deviation s of the values on one coarser grid and on its shifted copies, and the ratio r of its
+    /// spacing to that of the finest grid. Fewer than two values have no scatter.
     ///
     /// *Assumption:* the scatter is of first order in the grid spacing.
     #[must_use]
