@@ -177,8 +177,9 @@ pub(super) fn refuses_sweep(key: &Key, at: &Range<usize>, faults: &mut Faults<'_
     refuses
 }
 
-/// Checks the keys that choose the grid.
-pub(super) fn check_choice(values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
+/// Checks the keys that choose the grid, with the coarser ones of a list.
+pub(super) fn check_choice(values: &Values, listed: &[Coarser], origins: &[Origin], faults: &mut Faults<'_>) {
+    check_copies(values, listed, origins, faults);
     let [points, number, error] = CHOICES;
     for pair in [[points, number], [points, error], [number, error]] {
         exclude(pair, "each of them chooses the grids: give one", origins, faults);
@@ -199,13 +200,8 @@ pub(super) fn copies(coarsest: &CaseParams, count: u32) -> Vec<CaseParams> {
     (1..=count).map(|k| coarsest.shifted(f64::from(k) / f64::from(count + 1))).collect()
 }
 
-/// Checks the requirements of shifted copies on a case and on its grids.
-pub(super) fn check_copies(
-    case: &CaseParams,
-    values: &Values,
-    (origins, is_listed): (&[Origin], bool),
-    faults: &mut Faults<'_>,
-) {
+/// Checks the requirements of shifted copies on the grids and on the surface.
+fn check_copies(values: &Values, listed: &[Coarser], origins: &[Origin], faults: &mut Faults<'_>) {
     let [points, number, error] = CHOICES;
     let span = written(place(COPIES), origins).filter(|_| values.goal.shifted_copies > 0);
     // A faulty choice of the grids is refused by itself.
@@ -214,19 +210,22 @@ pub(super) fn check_copies(
     let mut refuse = |problem: &str, help: &str| {
         faults.add(&span, format!("`{COPIES}` needs {problem}"), help.to_owned());
     };
-    if !is_listed && values.goal.error.is_none() {
+    if listed.is_empty() && values.goal.error.is_none() {
         refuse(
             "a list of grids: the coarsest one is shifted",
             "add points = [64, 128, 256], or error = 0.05",
         );
     }
-    if case.elements().is_some() && !case.surface.is_periodic() {
+    if values.method != Method::BoundaryElements {
+        return;
+    }
+    if values.measured.is_named() && !values.measured.periodic {
         refuse(
             "periodic surfaces: mirror images cannot be shifted",
             "remove the key, or use surface.periodic = true with a periodic scan",
         );
     }
-    if case.elements().is_some() && case.probe.is_some() {
+    if values.radius_m.is_some() {
         refuse("surfaces without a probe, which is not periodic", "remove the key, or probe.radius_m");
     }
 }

@@ -45,12 +45,10 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             complete(&mut values, origins);
             sides.set(&mut values, &draft.files, draft.are_sides_read);
             let is_auto = choices.choose(&mut values);
-            coarser::check_choice(&values, origins, faults);
+            coarser::check_choice(&values, &coarser_grids, origins, faults);
             let first = coarser::first_grids(&mut values, origins, faults);
             let params = values.case();
             check(&params, &values, (origins, swept), faults);
-            let is_listed = !coarser_grids.is_empty();
-            coarser::check_copies(&params, &values, (origins, is_listed), faults);
             let grids = if values.goal.error.is_some() { &first } else { &coarser_grids };
             coarser.extend(on_coarser(grids, &values, (origins, swept), faults));
             let case = cases.add(&[sweep.to_owned()], params);
