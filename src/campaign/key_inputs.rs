@@ -258,10 +258,10 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
         }
         MethodOptions::Elements(options) => {
             let is_first = params.surface.is_periodic() && params.cycle.max_load.len() == 1;
-            let version = match options.law {
-                FrontLaw::Corrected => present(Elements::VERSIONS),
-                FrontLaw::Plain if is_first => ELEMENTS_VERSION,
-                FrontLaw::Plain => PLAIN_VERSION,
+            let version = match options.attraction.law() {
+                Some(FrontLaw::Corrected) => present(Elements::VERSIONS),
+                _ if is_first => ELEMENTS_VERSION,
+                _ => PLAIN_VERSION,
             };
             model.1 = json!({ "method": model.1["method"], "method_version": version });
             remove(&mut cycle.1, "approach_step");

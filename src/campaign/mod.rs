@@ -254,14 +254,17 @@ impl Campaign {
         self.cases[unit.case].case.is_coarser_grid()
     }
 
-    /// Name of a cycle in messages: its id, and the grid of a coarser one.
+    /// Name of a cycle in messages: its id, and the grid of a coarser one or of a shifted copy.
     #[must_use]
     pub fn name_of(&self, unit: &CycleUnit) -> String {
         let case = &self.cases[unit.case].case;
         let grid = case.params.elements().filter(|_| case.is_coarser_grid());
         grid.map_or_else(
             || unit.id.clone(),
-            |of| format!("{} (coarser grid of {})", unit.id, of.grid_in_words()),
+            |of| {
+                let kind = if case.is_shifted_copy() { "shifted copy" } else { "coarser grid" };
+                format!("{} ({kind} of {})", unit.id, of.grid_in_words())
+            },
         )
     }
 

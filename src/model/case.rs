@@ -137,6 +137,9 @@ pub struct ElementOptions {
     pub points: Option<u32>,
     /// Grid points per shortest wavelength of a measured surface, at least; nothing for the automatic number.
     pub per_wavelength: Option<u32>,
+    /// Shift of the grid along rows and columns, as a part of its spacing; 0 but for shifted copies of
+    /// coarser grids.
+    pub shift: f64,
     /// Attraction between the surfaces.
     pub attraction: Attraction,
     /// Step of the mean penetration, as a part of the rms height.
@@ -439,6 +442,7 @@ impl Default for ElementOptions {
         Self {
             points: None,
             per_wavelength: None,
+            shift: 0.0,
             attraction: Attraction::default(),
             approach_step: 0.03,
             halvings: 6,

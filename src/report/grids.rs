@@ -17,6 +17,8 @@ pub struct Grids {
     pub table: Frame,
     /// Results over the spacing of the grid, a panel for each of the first cases.
     pub panels: Vec<Panel>,
+    /// Shifted copies of the coarsest grid.
+    pub shifted_copies: u32,
     /// Failed cycles on coarser grids by reason.
     pub failures: Vec<Failure>,
 }
@@ -27,6 +29,9 @@ const NOTE: &str = "Estimated relative errors of results by boundary elements on
     of safety of 1.25 for three grids and 2 for two. They exclude an avalanche that happens next to F_{max} \
     on finer grids only: compare several loads or surfaces. Points: per shortest wavelength, of all grids. \
     Extrapolated Θ: value on an infinitely fine grid, where three grids have a regular series.";
+
+const OF_COPIES: &str = " The errors contain the scatter by the position of the grid: twice the standard \
+    deviation over the coarsest grid and its shifted copies, taken as proportional to the spacing.";
 
 /// Columns of errors with their heads.
 const ERRORS: [(&str, &str); 5] = [
@@ -60,7 +65,7 @@ pub(super) fn section(
     Ok(Some(html! {
         (heading("Grid error"))
         @if !rows.is_empty() {
-            p { (prose(NOTE)) } "\n"
+            p { (prose(NOTE)) @if of.shifted_copies > 0 { (prose(OF_COPIES)) } } "\n"
             (cases.wide("grid-error", &head, rows))
             @if !of.panels.is_empty() { (grid(numbers, &of.panels)) }
         }

@@ -11,8 +11,8 @@ macro_rules! error {
             concat!($stem, "_grid_error"),
             "1",
             concat!(
-                "Estimated relative discretization error of boundary elements, from coarser grids on the \
-                 same surfaces: ",
+                "Estimated relative discretization error of boundary elements, from coarser grids and \
+                 shifted copies on the same surfaces: ",
                 $what,
                 "; null without coarser grids"
             ),

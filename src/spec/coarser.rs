@@ -4,13 +4,15 @@
 //! `boundary_elements.points = [64, 128, 256]` outside of sweeps lists them, or `points_per_wavelength = [4,
 //! 8, 16]`: the finest grid gives the result. Each coarser grid is a case of its own, in the sweep
 //! [`COARSER`] alone, with the same surfaces. `boundary_elements.error` begins with three grids and adds
-//! finer ones, see [`Spec::refined`].
+//! finer ones, see [`Spec::refined`]. With `boundary_elements.shifted_copies` the coarsest grid is repeated
+//! with shifted points, as further cases of that sweep.
 
 use std::ops::Range;
 
 use toml::de::DeValue;
 
 use super::cases::Cases;
+use super::elements::latest;
 use super::fault::Faults;
 use super::keys::{KEYS, Key, find};
 use super::number::short;
@@ -33,8 +35,11 @@ pub(super) const CHOICES: [&str; 3] = [LISTS[0], LISTS[1], ERROR];
 /// The key of a required grid error.
 pub(super) const ERROR: &str = "boundary_elements.error";
 
+/// The key of the number of shifted copies.
+const COPIES: &str = "boundary_elements.shifted_copies";
+
 /// The keys that hold for all cases.
-pub(super) const FOR_ALL: [&str; 2] = [ERROR, "boundary_elements.max_points"];
+pub(super) const FOR_ALL: [&str; 3] = [ERROR, "boundary_elements.max_points", COPIES];
 
 /// Points per shortest wavelength of the first grids for a required grid error.
 const FIRST: [u32; 3] = [4, 8, 16];
@@ -52,10 +57,16 @@ pub(super) const MOST: usize = 6;
 pub(super) type Coarser = (u32, Range<usize>);
 
 impl Case {
-    /// True if the case is only a coarser grid of others.
+    /// True if the case is only a coarser grid of others, or a shifted copy of it.
     #[must_use]
     pub fn is_coarser_grid(&self) -> bool {
         self.sweeps == [COARSER]
+    }
+
+    /// True if the case is a shifted copy of a coarser grid.
+    #[must_use]
+    pub fn is_shifted_copy(&self) -> bool {
+        self.params.elements().is_some_and(|options| options.shift != 0.0)
     }
 }
 
@@ -76,13 +87,22 @@ impl CaseParams {
         params
     }
 
-    /// The parameters of a case by boundary elements without its number of grid points; nothing for other
-    /// methods.
+    /// The parameters on a grid of boundary elements that is shifted by a part of its spacing.
+    pub(super) fn shifted(&self, shift: f64) -> Self {
+        let mut params = self.clone();
+        if let MethodOptions::Elements(options) = &mut params.method {
+            options.shift = shift;
+        }
+        params
+    }
+
+    /// The parameters of a case by boundary elements without its number of grid points and their shift;
+    /// nothing for other methods.
     #[must_use]
     pub fn on_any_grid(&self) -> Option<Self> {
         let mut params = self.clone();
         let MethodOptions::Elements(options) = &mut params.method else { return None };
-        (options.points, options.per_wavelength) = (None, None);
+        (options.points, options.per_wavelength, options.shift) = (None, None, 0.0);
         Some(params)
     }
 }
@@ -172,8 +192,9 @@ pub(super) fn refuses_sweep(key: &Key, at: &Range<usize>, faults: &mut Faults<'_
     refuses
 }
 
-/// Checks the keys that choose the grid.
-pub(super) fn check_choice(values: &Values, origins: &[Origin], faults: &mut Faults<'_>) {
+/// Checks the keys that choose the grid, with the coarser ones of a list.
+pub(super) fn check_choice(values: &Values, listed: &[Coarser], origins: &[Origin], faults: &mut Faults<'_>) {
+    check_copies(values, listed, origins, faults);
     let [points, number, error] = CHOICES;
     for pair in [[points, number], [points, error], [number, error]] {
         exclude(pair, "each of them chooses the grids: give one", origins, faults);
@@ -192,6 +213,41 @@ pub(super) fn check_choice(values: &Values, origins: &[Origin], faults: &mut Fau
 fn too_few(at: &Range<usize>, few: u32, faults: &mut Faults<'_>) {
     let message = format!("`{}` is {few}: at least {FEWEST} are needed", LISTS[1]);
     faults.add(at, message, format!("{FEWEST} resolve the waves, 8 and more the events"));
+}
+
+/// Shifted copies of a case on the coarsest grid: by k/(n + 1) of its spacing, k = 1 to n.
+pub(super) fn copies(coarsest: &CaseParams, count: u32) -> Vec<CaseParams> {
+    (1..=count).map(|k| coarsest.shifted(f64::from(k) / f64::from(count + 1))).collect()
+}
+
+/// Checks the requirements of shifted copies on the grids and on the surface.
+fn check_copies(values: &Values, listed: &[Coarser], origins: &[Origin], faults: &mut Faults<'_>) {
+    let [points, number, error] = CHOICES;
+    let span = written(place(COPIES), origins).filter(|_| values.goal.shifted_copies > 0);
+    // A faulty choice of the grids is refused by itself.
+    let is_known = latest(&[COPIES, points, number, error], origins).is_some();
+    let Some(span) = span.filter(|_| is_known) else { return };
+    let mut refuse = |problem: &str, help: &str| {
+        faults.add(&span, format!("`{COPIES}` needs {problem}"), help.to_owned());
+    };
+    if listed.is_empty() && values.goal.error.is_none() {
+        refuse(
+            "a list of grids: the coarsest one is shifted",
+            "add points = [64, 128, 256], or error = 0.05",
+        );
+    }
+    if values.method != Method::BoundaryElements {
+        return;
+    }
+    if values.measured.is_named() && !values.measured.periodic {
+        refuse(
+            "periodic surfaces: mirror images cannot be shifted",
+            "remove the key, or use surface.periodic = true with a periodic scan",
+        );
+    }
+    if values.radius_m.is_some() {
+        refuse("surfaces without a probe, which is not periodic", "remove the key, or probe.radius_m");
+    }
 }
 
 /// Sets the finest of the first grids of a case for a required grid error, and gives the coarser ones: those

@@ -45,7 +45,7 @@ pub(super) fn expand(draft: Draft, faults: &mut Faults<'_>) -> Option<Spec> {
             complete(&mut values, origins);
             sides.set(&mut values, &draft.files, draft.are_sides_read);
             let is_auto = choices.choose(&mut values);
-            coarser::check_choice(&values, origins, faults);
+            coarser::check_choice(&values, &coarser_grids, origins, faults);
             let first = coarser::first_grids(&mut values, origins, faults);
             let params = values.case();
             check(&params, &values, (origins, swept), faults);
@@ -201,7 +201,8 @@ fn complete(values: &mut Values, origins: &[Origin]) {
     }
 }
 
-/// The cases of a case on coarser grids; none where a sweep sets the grid, and for asperities.
+/// The cases of a case on coarser grids, with shifted copies of the coarsest one; none where a sweep sets the
+/// grid, and for asperities.
 fn on_coarser(
     grids: &[Coarser],
     values: &Values,
@@ -225,6 +226,8 @@ fn on_coarser(
             found.push(params);
         }
     }
+    let copies = found.first().map(|coarsest| coarser::copies(coarsest, values.goal.shifted_copies));
+    found.extend(copies.into_iter().flatten());
     found
 }
 

@@ -341,6 +341,10 @@ pub(super) static KEYS: &[Key] = &[
     key!(boundary_elements.max_points in goal.max_points, "", "Maximum number of grid points along a side \
          with `error`."; count 16 to 4096, &[],
         "grid points along a side, at most, with error; default 1024"),
+    key!(boundary_elements.shifted_copies in goal.shifted_copies, "", "Copies of the coarsest grid of a \
+         list, or of `error`, with its points shifted by parts of its spacing. The scatter of their results \
+         is part of the grid error. For periodic surfaces without a probe."; count 0 to 8, &[],
+        "shifted copies of the coarsest grid, for the grid error; default 0, useful 3"),
     key!(boundary_elements.attraction in attraction, "", "Attraction between the surfaces.";
         word AttractionKind),
     key!(boundary_elements.range_m in range_m, "ρ", "Range of the Morse law with `attraction = \"range\"`. \
@@ -434,8 +438,8 @@ pub const OPTIONAL_TABLES: [&str; 3] = ["probe", "machine", "substrate"];
 /// Keys of `[cycle]` for loads in other units, which are converted.
 pub const OTHER_LOADS: [&str; 2] = ["max_force_n", "max_pressure_pa"];
 
-/// Keys of `[boundary_elements]` that choose the grid instead of its points.
-pub const OTHER_GRIDS: [&str; 3] = ["points_per_wavelength", "error", "max_points"];
+/// Keys of `[boundary_elements]` that choose the grid instead of its points, or serve its error.
+pub const OTHER_GRIDS: [&str; 4] = ["points_per_wavelength", "error", "max_points", "shifted_copies"];
 
 /// Keys of `[model]` that the asperity model alone reads.
 pub const OF_ASPERITIES: [&str; 5] = ["interaction", "boundary", "coalescence", "jump_in", "allow_low_tabor"];

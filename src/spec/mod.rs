@@ -209,7 +209,7 @@ pub struct Spec {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Case {
     /// Names of all sweeps in which this case occurs, in their order; `base` alone when the spec has no
-    /// sweep, and [`COARSER`] alone for a case that is only a coarser grid of others.
+    /// sweep, and [`COARSER`] alone for a case that is only a coarser grid of others or its shifted copy.
     pub sweeps: Vec<String>,
     /// Parameters of the case.
     pub params: CaseParams,

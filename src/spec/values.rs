@@ -28,7 +28,7 @@ pub struct Values {
     pub asperities: AsperityOptions,
     /// Keys of boundary elements but those of the attraction.
     pub elements: ElementOptions,
-    /// `boundary_elements.error` and `boundary_elements.max_points`.
+    /// `boundary_elements.error`, `max_points` and `shifted_copies`.
     pub goal: GridGoal,
     /// `boundary_elements.attraction`.
     pub attraction: AttractionKind,
@@ -60,18 +60,20 @@ pub struct Values {
     pub side_m: Option<f64>,
 }
 
-/// Grid error that a spec requires.
+/// Grid error that a spec requires, and its estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridGoal {
     /// Relative grid error of the mean dissipated energy.
     pub error: Option<f64>,
     /// Largest number of grid points along a side.
     pub max_points: u32,
+    /// Shifted copies of the coarsest grid.
+    pub shifted_copies: u32,
 }
 
 impl Default for GridGoal {
     fn default() -> Self {
-        Self { error: None, max_points: 1024 }
+        Self { error: None, max_points: 1024, shifted_copies: 0 }
     }
 }
 
@@ -242,7 +244,7 @@ impl From<&CaseParams> for Values {
 
 impl Serialize for Values {
     /// The tables of a spec with every key; tables that a spec need not have and loads in other units where
-    /// they say something.
+    /// they say something. A shifted grid has its shift.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let default = Self::default();
         let says = |key: &Key| (key.get)(self) != (key.get)(&default);
@@ -253,7 +255,11 @@ impl Serialize for Values {
         let is_shown = |key: &&Key| !is_optional(key) || says(key);
         let values = |table| {
             let shown = keys(table).filter(is_shown);
-            shown.map(|key| (key.name, (key.get)(self))).collect::<BTreeMap<&str, Value>>()
+            let of_keys = shown.map(|key| (key.name, (key.get)(self)));
+            let shift = self.elements.shift;
+            let of_copy =
+                (table == "boundary_elements" && shift != 0.0).then_some(("shift", Value::Number(shift)));
+            of_keys.chain(of_copy).collect::<BTreeMap<&str, Value>>()
         };
         let is_table = |table: &&'static str| !OPTIONAL_TABLES.contains(table) || keys(table).any(says);
         serializer.collect_map(TABLES.into_iter().filter(is_table).map(|table| (table, values(table))))

@@ -254,6 +254,7 @@ pub(super) fn case_input(
         sweep: unit.case.sweeps.join("+"),
         family: params.on_any_grid().map(|params| format!("{params:?}")),
         is_coarser_grid: unit.case.is_coarser_grid(),
+        is_shifted_copy: unit.case.is_shifted_copy(),
         parameters,
         max_loads: params.cycle.max_load.clone(),
         load_unit: campaign.spec.load_unit(),

@@ -8,16 +8,16 @@ use crate::figures::{OfGrids, over_grids};
 use crate::physics::theory::grid_convergence::grid_error;
 use crate::report::{Failure, Grids};
 use crate::schema::GRIDS;
-use crate::stats::{Given, GridEstimate, listing, loads, results};
+use crate::stats::{Given, GridEstimate, GridSeries, listing, loads, results};
 use crate::store::Frame;
 use crate::store::parquet::read_table;
 
 /// Cases with a figure.
 const MOST_PANELS: usize = 4;
 
-/// Discretization error of the value on the finest of several grids.
-pub(super) fn grid_rule(points: &[f64], values: &[f64]) -> Option<GridEstimate> {
-    let found = grid_error(points, values).ok()?;
+/// Discretization error of the value on the finest of several grids, with the scatter of shifted copies.
+pub(super) fn grid_rule(of: &GridSeries<'_>) -> Option<GridEstimate> {
+    let found = grid_error(of.points, of.values).ok()?.with_scatter(of.copies, of.refinement);
     Some(GridEstimate { relative: found.relative, extrapolated: found.extrapolated })
 }
 
@@ -57,5 +57,5 @@ pub(super) fn grids(
         let of = OfGrids { case_id: ids[row], max_load: max_loads[row], label: &label };
         panels.extend(over_grids(&table, &of, panels.len() + 1)?);
     }
-    Ok(Some(Grids { table, panels, failures }))
+    Ok(Some(Grids { table, panels, shifted_copies: campaign.spec.base.goal.shifted_copies, failures }))
 }

@@ -4,6 +4,9 @@
 //! same surfaces were loaded and unloaded on a coarser grid of the family. The error of a mean follows from
 //! the means over the surfaces that all grids have: there, events that single surfaces skip on one grid
 //! average out.
+//!
+//! Shifted copies of a grid are no grids of a series. The standard deviation of their values is the scatter
+//! by the position of the grid, which is part of the error.
 
 use super::cautions::{GRID_ERROR, with_code};
 use super::rows::Rows;
@@ -21,8 +24,21 @@ pub struct GridEstimate {
     pub extrapolated: Option<f64>,
 }
 
-/// Error of the last of several values on grids of ascending points; nothing where it is undefined.
-pub type GridRule = fn(&[f64], &[f64]) -> Option<GridEstimate>;
+/// Values of a result on several grids.
+#[derive(Debug, Clone, Copy)]
+pub struct GridSeries<'a> {
+    /// Points of the grids, ascending.
+    pub points: &'a [f64],
+    /// Values on these grids.
+    pub values: &'a [f64],
+    /// Values on one coarser grid and on its shifted copies; empty without copies.
+    pub copies: &'a [f64],
+    /// Spacing of that grid over the spacing of the finest grid; not a number without copies.
+    pub refinement: f64,
+}
+
+/// Error of the last value of a series; nothing where it is undefined.
+pub type GridRule = fn(&GridSeries<'_>) -> Option<GridEstimate>;
 
 /// Results with an error: column of the table `realizations`, and stem of the columns of the error.
 pub const QUANTITIES: [(&str, &str); 5] = [
@@ -146,6 +162,12 @@ fn error_column(stem: &str) -> String {
     format!("{stem}_grid_error")
 }
 
+/// Family, and bits of the load.
+type Key<'a> = (&'a str, u64);
+
+/// Surfaces with a value of each result.
+type Surfaces = [BTreeSet<i64>; QUANTITIES.len()];
+
 /// All loops by boundary elements, by row of the table `realizations`.
 struct Loops<'a> {
     /// Family, bits of the load, and realization of each row; nothing for other methods.
@@ -153,8 +175,10 @@ struct Loops<'a> {
     case_ids: Vec<&'a str>,
     points: Vec<f64>,
     values: Vec<Errors>,
-    /// Rows of each family and load.
-    rows: HashMap<(&'a str, u64), Vec<usize>>,
+    /// Rows of each family and load, without shifted copies.
+    rows: HashMap<Key<'a>, Vec<usize>>,
+    /// Rows of one grid of each family and load, then those of each of its shifted copies.
+    copies: HashMap<Key<'a>, Vec<Vec<usize>>>,
 }
 
 impl<'a> Loops<'a> {
@@ -170,9 +194,12 @@ impl<'a> Loops<'a> {
             Some((*family, loads[row].to_bits(), numbers[row]))
         };
         let keys: Vec<_> = (0..case_ids.len()).map(key).collect();
-        let mut rows: HashMap<_, Vec<usize>> = HashMap::new();
+        let shifted: BTreeSet<&str> =
+            inputs.iter().filter(|case| case.is_shifted_copy).map(|case| case.case_id.as_str()).collect();
+        let [mut rows, mut of_copies]: [HashMap<_, Vec<usize>>; 2] = Default::default();
         for (row, key) in keys.iter().enumerate() {
             if let Some((family, load, _)) = key {
+                let rows = if shifted.contains(case_ids[row]) { &mut of_copies } else { &mut rows };
                 rows.entry((*family, *load)).or_default().push(row);
             }
         }
@@ -183,13 +210,65 @@ impl<'a> Loops<'a> {
             }
         }
         let points = points.iter().map(|points| points.unwrap_or_default()).collect();
-        Ok(Self { keys, case_ids, points, values, rows })
+        let mut loops = Self { keys, case_ids, points, values, rows, copies: HashMap::new() };
+        loops.copies = of_copies.into_iter().map(|(key, rows)| (key, loops.groups(key, &rows))).collect();
+        Ok(loops)
+    }
+
+    /// Rows of the shifted copies of a grid by their cases, after those of the grid itself.
+    fn groups(&self, key: Key<'a>, copies: &[usize]) -> Vec<Vec<usize>> {
+        let mut by_case: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        copies.iter().for_each(|row| by_case.entry(self.case_ids[*row]).or_default().push(*row));
+        let surface = |row: usize| self.keys[row].map(|key| (key.2, self.points[row].to_bits()));
+        let mut wanted: BTreeSet<_> = copies.iter().filter_map(|row| surface(*row)).collect();
+        // Equal grids of different cases count once.
+        let unshifted = self.rows.get(&key).into_iter().flatten().copied();
+        let unshifted = unshifted.filter(|row| surface(*row).is_some_and(|of| wanted.remove(&of))).collect();
+        let all = std::iter::once(unshifted).chain(by_case.into_values());
+        all.filter(|rows| !rows.is_empty()).collect()
+    }
+
+    /// Groups of the rows of a grid and of its shifted copies; empty without them.
+    fn copies(&self, key: Key<'a>) -> Vec<&[usize]> {
+        self.copies.get(&key).into_iter().flatten().map(Vec::as_slice).collect()
+    }
+
+    /// Means of each result over the surfaces that a grid, its shifted copies and a series have.
+    fn means_of_copies(&self, key: Key<'a>, of_series: &Surfaces) -> Copies {
+        let groups = self.copies(key);
+        let common = self.common(&groups);
+        let values = std::array::from_fn(|place| {
+            let surfaces = &common[place] & &of_series[place];
+            groups.iter().filter_map(|rows| self.mean(rows, place, &surfaces)).collect()
+        });
+        Copies { values, points: mean(groups.iter().copied().flatten().map(|row| self.points[*row])) }
+    }
+
+    /// Results on one surface of a grid and of its shifted copies.
+    fn copies_of_surface(&self, key: Key<'a>, realization: i64) -> Copies {
+        let groups = self.copies(key);
+        let is_own = |row: &usize| self.keys[*row].is_some_and(|key| key.2 == realization);
+        let rows: Vec<usize> = groups.into_iter().flatten().copied().filter(is_own).collect();
+        let values =
+            std::array::from_fn(|place| rows.iter().filter_map(|row| self.values[*row][place]).collect());
+        Copies { values, points: mean(rows.iter().map(|row| self.points[*row])) }
+    }
+
+    /// Mean of a result over surfaces; nothing without surfaces.
+    fn mean(&self, rows: &[usize], place: usize, surfaces: &BTreeSet<i64>) -> Option<f64> {
+        let values = rows.iter().filter_map(|row| {
+            let is_common = self.keys[*row].is_some_and(|key| surfaces.contains(&key.2));
+            self.values[*row][place].filter(|_| is_common)
+        });
+        Some(mean(values)).filter(|_| !surfaces.is_empty())
     }
 
     /// Errors of the results of one loop, from loops of the same surface.
     fn errors(&self, row: usize, rule: GridRule) -> Errors {
         let Some((family, load, realization)) = self.keys[row] else { return Errors::default() };
-        let of_surface = self.rows[&(family, load)].iter().filter(|other| {
+        // A copy may be the only loop of its family.
+        let of_family = self.rows.get(&(family, load)).into_iter().flatten();
+        let of_surface = of_family.filter(|other| {
             self.keys[**other].is_some_and(|key| key.2 == realization)
                 && self.points[**other] < self.points[row]
         });
@@ -200,9 +279,10 @@ impl<'a> Loops<'a> {
         let finest = coarser.split_off((coarser.len() + 1).saturating_sub(MOST));
         let all: Vec<usize> = finest.into_iter().chain([row]).collect();
         let points: Vec<f64> = all.iter().map(|of| self.points[*of]).collect();
+        let copies = self.copies_of_surface((family, load), realization);
         std::array::from_fn(|place| {
             let values = all.iter().map(|of| self.values[*of][place]).collect::<Option<Vec<f64>>>()?;
-            estimate(rule, &points, &values).map(|of| of.relative)
+            estimate(rule, (&points, &values), &copies, place).map(|of| of.relative)
         })
     }
 
@@ -210,7 +290,8 @@ impl<'a> Loops<'a> {
     /// Empty without a finished loop.
     fn series(&self, case: &CaseInput, max_load: f64) -> Vec<Grid<'a>> {
         let Some(family) = case.family.as_deref() else { return Vec::new() };
-        let Some(rows) = self.rows.get(&(family, max_load.to_bits())) else { return Vec::new() };
+        let key = (family, max_load.to_bits());
+        let Some((key, rows)) = self.rows.get_key_value(&key) else { return Vec::new() };
         let mut by_case: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for row in rows {
             by_case.entry(self.case_ids[*row]).or_default().push(*row);
@@ -227,26 +308,21 @@ impl<'a> Loops<'a> {
         all.dedup_by(|a, b| a.0 == b.0);
         all.push((finest, own));
         let all = all.split_off(all.len().saturating_sub(MOST));
-        let common = self.common(&all);
-        let of_common = |rows: &[usize], place: usize, surfaces: &BTreeSet<i64>| {
-            let values = rows.iter().filter_map(|row| {
-                let is_common = self.keys[*row].is_some_and(|key| surfaces.contains(&key.2));
-                self.values[*row][place].filter(|_| is_common)
-            });
-            Some(mean(values)).filter(|_| !surfaces.is_empty())
-        };
+        let common = self.common(&all.iter().map(|(_, rows)| rows.as_slice()).collect::<Vec<_>>());
+        let copies = self.means_of_copies(*key, &common);
         let mut series: Vec<Grid<'a>> = Vec::new();
         for (points, rows) in &all {
             let coarser = series.last().map_or(&[][..], |grid| &grid.points);
             let points = [coarser, &[*points]].concat();
             let values = std::array::from_fn(|place| {
                 let coarser = series.last().map_or(&[][..], |grid| &grid.values[place]);
-                [coarser, &[of_common(rows, place, &common[place])]].concat()
+                [coarser, &[self.mean(rows, place, &common[place])]].concat()
             });
             series.push(Grid {
                 case_id: self.case_ids[rows[0]],
                 points,
                 values,
+                copies: copies.clone(),
                 surface_count: common[LOSS].len(),
             });
         }
@@ -254,15 +330,24 @@ impl<'a> Loops<'a> {
     }
 
     /// Surfaces with a value of each result on all grids.
-    fn common(&self, all: &[(f64, Vec<usize>)]) -> [BTreeSet<i64>; QUANTITIES.len()] {
+    fn common(&self, all: &[&[usize]]) -> Surfaces {
         std::array::from_fn(|place| {
             let of = |rows: &[usize]| -> BTreeSet<i64> {
                 let known = rows.iter().filter(|row| self.values[**row][place].is_some());
                 known.filter_map(|row| self.keys[*row].map(|key| key.2)).collect()
             };
-            all.iter().map(|(_, rows)| of(rows)).reduce(|a, b| &a & &b).unwrap_or_default()
+            all.iter().map(|rows| of(rows)).reduce(|a, b| &a & &b).unwrap_or_default()
         })
     }
+}
+
+/// Results on a grid and on its shifted copies.
+#[derive(Debug, Clone)]
+struct Copies {
+    /// Values of each result.
+    values: [Vec<f64>; QUANTITIES.len()],
+    /// Points per shortest wavelength; not a number without copies.
+    points: f64,
 }
 
 /// One grid of a series with the coarser ones.
@@ -273,13 +358,15 @@ struct Grid<'a> {
     points: Vec<f64>,
     /// Means of each result on these grids.
     values: [Vec<Option<f64>>; QUANTITIES.len()],
+    /// Means of each result on one coarser grid and on its shifted copies.
+    copies: Copies,
     surface_count: usize,
 }
 
 impl Grid<'_> {
     fn estimate(&self, place: usize, rule: GridRule) -> Option<GridEstimate> {
         let values = self.values[place].iter().copied().collect::<Option<Vec<f64>>>()?;
-        estimate(rule, &self.points, &values)
+        estimate(rule, (&self.points, &values), &self.copies, place)
     }
 
     fn errors(&self, rule: GridRule) -> Errors {
@@ -305,9 +392,18 @@ impl Grid<'_> {
     }
 }
 
-/// Estimate of a series of at least two grids, if it is finite.
-fn estimate(rule: GridRule, points: &[f64], values: &[f64]) -> Option<GridEstimate> {
-    let found = (points.len() > 1).then(|| rule(points, values)).flatten();
+/// Estimate of a result on a series of at least two grids, if it is finite. Copies of a grid that is not
+/// coarser than the finest one do not count.
+fn estimate(
+    rule: GridRule,
+    (points, values): (&[f64], &[f64]),
+    copies: &Copies,
+    place: usize,
+) -> Option<GridEstimate> {
+    let refinement = points.last()? / copies.points;
+    let copies: &[f64] = if refinement > 1.0 { &copies.values[place] } else { &[] };
+    let series = GridSeries { points, values, copies, refinement };
+    let found = (points.len() > 1).then(|| rule(&series)).flatten();
     found.filter(|of| of.relative.is_finite())
 }
 

@@ -44,7 +44,7 @@ pub use compare::{Difference, Group, Matched, Side, comparison, difference_of, m
 pub use curves::curves;
 pub use digits::{column_exponent, decimals, labels, labels_with_unit, significant};
 pub use findings::{FINDINGS, Judged, Reading, Verdict, findings};
-pub use grid_error::{GridEstimate, GridRule, WithGridErrors, with_grid_errors};
+pub use grid_error::{GridEstimate, GridRule, GridSeries, WithGridErrors, with_grid_errors};
 pub use grid_verdict::{grid_help, grid_percent, grid_verdict};
 pub use listed::{Listed, Listing, listing, listing_of, sweeps};
 pub use loads::{load_in_words, loads};
@@ -75,6 +75,8 @@ pub struct CaseInput {
     pub family: Option<String>,
     /// True for a case that is only a coarser grid of others: its loops serve their discretization errors.
     pub is_coarser_grid: bool,
+    /// True for a shifted copy of such a grid: its loops serve the scatter by the position of the grid.
+    pub is_shifted_copy: bool,
     /// Parameters of the case: the columns that the tables `realizations` and `cases` have in common.
     pub parameters: Given,
     /// Its load reversals, as `F/(E* A0)`.

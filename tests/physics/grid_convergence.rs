@@ -57,6 +57,22 @@ fn law_grid_error_is_homogeneous() {
     }
 }
 
+/// The scatter of shifted copies is twice their sample standard deviation over the ratio of the spacings, added in squares. Copies without
+/// scatter, and a single value, change no digit.
+#[test]
+fn law_scatter_of_shifted_copies_is_added_in_squares() {
+    let found = grid_error(&[16.0, 32.0, 64.0], &[2.4, 2.2, 2.1]).unwrap();
+    for same in [&[][..], &[2.5], &[2.5, 2.5, 2.5]] {
+        assert_eq!(found.with_scatter(same, 4.0), found);
+        assert_eq!(found.with_scatter(same, f64::NAN), found);
+    }
+    // Deviations -0.1, 0 and 0.1 of three values: s = 0.1.
+    let with = found.with_scatter(&[2.4, 2.5, 2.6], 4.0);
+    close("absolute error", with.absolute, found.absolute.hypot(2.0 * 0.1 / 4.0), 1e-12);
+    close("relative error", with.relative, with.absolute / 2.1, 1e-12);
+    assert_eq!((with.order, with.extrapolated), (found.order, found.extrapolated));
+}
+
 /// Series that are not monotone, or have an order below 0.6, have 1.25 times their range as error, and no limit; of grids that differ
 /// little, that of the smallest order.
 #[test]

@@ -34,7 +34,7 @@ fn keys() -> BTreeSet<String> {
         measured: MeasuredSurface { files: vec!["a".to_owned()], ..MeasuredSurface::default() },
         max_pressure_pa: vec![1.0],
         elements: ElementOptions { per_wavelength: Some(8), ..ElementOptions::default() },
-        goal: GridGoal { error: Some(0.1), max_points: 64 },
+        goal: GridGoal { error: Some(0.1), max_points: 64, shifted_copies: 1 },
         ..Values::default()
     };
     let tables = serde_json::to_value(values).unwrap();

@@ -53,6 +53,7 @@ mod scan;
 mod schema;
 #[cfg(feature = "stats")]
 mod several;
+mod shifted;
 #[cfg(feature = "stats")]
 mod sinusoid;
 #[cfg(feature = "stats")]

@@ -127,6 +127,7 @@ pub fn case(id: &str, sweep: &str, hurst: f64, magnification: f64, max_loads: &[
         sweep: sweep.to_owned(),
         family: None,
         is_coarser_grid: false,
+        is_shifted_copy: false,
         parameters: given(&[
             ("hurst", hurst.into()),
             ("magnification", magnification.into()),

@@ -11,7 +11,7 @@ use crate::text::wrapped;
 /// lists grids; empty otherwise.
 pub(super) fn text(campaign: &Campaign) -> String {
     let [_, by_elements] = campaign.case_counts();
-    let (spec, GridGoal { error, max_points }) = (&campaign.spec, campaign.spec.base.goal);
+    let (spec, GridGoal { error, max_points, .. }) = (&campaign.spec, campaign.spec.base.goal);
     let key = match error {
         Some(_) => "boundary_elements.error",
         None if spec.coarser_points.is_empty() => return String::new(),

@@ -356,11 +356,20 @@ fn describe(
     text
 }
 
-/// Number of coarser grids of the cases, as in " with 4 coarser grids"; empty without any.
+/// Number of coarser grids of the cases and of their shifted copies, as in " with 4 coarser grids"; empty
+/// without any.
 fn coarser_grids(campaign: &Campaign) -> String {
-    match campaign.cases.len() - campaign.shown_cases().count() {
+    let copies = campaign.cases.iter().filter(|unit| unit.case.is_shifted_copy()).count();
+    let grids = campaign.cases.len() - campaign.shown_cases().count() - copies;
+    let of_copies = match copies {
         0 => String::new(),
-        count => format!(" with {}", counted(count, "coarser grid")),
+        1 => " and 1 shifted copy".to_owned(),
+        count => format!(" and {count} shifted copies"),
+    };
+    if grids + copies == 0 {
+        String::new()
+    } else {
+        format!(" with {}{of_copies}", counted(grids, "coarser grid"))
     }
 }
 

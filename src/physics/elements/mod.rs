@@ -112,8 +112,10 @@ impl Elements {
         let Units { points, is_mirrored, .. } = self.units;
         let own = self.units.own_points();
         let at = |place: f64| {
-            let nearest = ((place - self.units.first_m) / self.units.spacing_m()).round() as usize;
-            if is_mirrored { nearest.min(own - 1) } else { nearest % points }
+            let nearest = ((place - self.units.first_m) / self.units.spacing_m()).round();
+            // Before the first point of a shifted grid is the last one.
+            let periodic = || nearest.rem_euclid(points as f64) as usize;
+            if is_mirrored { (nearest as usize).min(own - 1) } else { periodic() }
         };
         self.settings.summits = places_m.into_iter().map(|[x, y]| at(x) * points + at(y)).collect();
         self

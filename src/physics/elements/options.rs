@@ -31,6 +31,9 @@ pub struct Options {
     /// 0: those of [`points_for`](super::points_for). Twice as many take 5 to 8 times as long; Θ changes by 9
     /// to 25 % from 8 to 16 per shortest wavelength.
     pub points: usize,
+    /// Place of the first point along rows and columns, as a part of the grid spacing. It is read for
+    /// periodic surfaces without a probe, of which another grid is another sample of the same surface.
+    pub shift: f64,
     /// Attraction.
     pub attraction: Attraction,
     /// Corrections of the law of bonded attraction.
@@ -70,6 +73,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             points: 0,
+            shift: 0.0,
             attraction: Attraction::Bonded { nucleation_m: 0.0, strength: f64::INFINITY },
             law: Front::PLAIN,
             probe: None,

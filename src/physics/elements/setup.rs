@@ -30,6 +30,11 @@ pub(super) fn units(map: &HeightMap<'_>, material: &Material, options: &Options)
     let points =
         if options.points == 0 { points_for(length_m / map.shortest_wavelength_m) } else { options.points };
     let (spacing, pixel) = (length_m / points as f64, map.length_m / map.heights_m.nrows() as f64);
+    let first_m = match options.probe {
+        _ if is_mirrored => 0.5 * (spacing - pixel),
+        None => options.shift * spacing,
+        Some(_) => 0.0,
+    };
     let mut units = Units {
         length_m,
         points,
@@ -37,7 +42,7 @@ pub(super) fn units(map: &HeightMap<'_>, material: &Material, options: &Options)
         rms_height_m: map.rms_height_m,
         step_unit_m: options.probe.map_or(map.rms_height_m, |probe| probe.jkr_length_m(material)),
         is_mirrored,
-        first_m: if is_mirrored { 0.5 * (spacing - pixel) } else { 0.0 },
+        first_m,
         machine_compliance: 0.0,
         is_load_controlled: options.machine.control == Control::Load,
     };

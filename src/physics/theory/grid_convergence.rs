@@ -18,13 +18,15 @@ const ORDERS: [f64; 2] = [0.6, 2.2];
 const THREE_GRIDS: f64 = 1.25;
 /// Factor of safety of two grids, with the order 1.
 const TWO_GRIDS: f64 = 2.0;
+/// Coverage factor of the scatter by the position of the grid.
+const COVERAGE: f64 = 2.0;
 /// Smallest relative error.
 const FLOOR: f64 = 0.005;
 /// Bisections of the observed order.
 const BISECTIONS: usize = 60;
 
 /// Constants of the estimate.
-pub(super) const CONSTANTS: [Constant; 4] = [
+pub(super) const CONSTANTS: [Constant; 5] = [
     row("observed order", &ORDERS, "Smallest and largest order of a regular series of three grids."),
     row(
         "factor of safety",
@@ -32,6 +34,11 @@ pub(super) const CONSTANTS: [Constant; 4] = [
         "Grid error of three grids over the estimated distance to the limit.",
     ),
     row("factor of safety of two grids", &[TWO_GRIDS], "Grid error of two grids, whose order is taken as 1."),
+    row(
+        "coverage factor of the scatter",
+        &[COVERAGE],
+        "Half-width of the scatter by the position of the grid over its standard deviation.",
+    ),
     row("smallest grid error", &[FLOOR], "Lower limit of relative grid errors."),
 ];
 
@@ -51,6 +58,34 @@ pub struct GridError {
     pub extrapolated: Option<f64>,
     /// Observed order p of a regular series of three grids.
     pub order: Option<f64>,
+}
+
+impl GridError {
+    /// The error with the scatter by the position of the grid, added in squares: `2 s/r`, with the standard
+    /// deviation s of the values on one coarser grid and on its shifted copies, and the ratio r of its
+    /// spacing to that of the finest grid. Fewer than two values have no scatter.
+    ///
+    /// *Assumption:* the scatter is of first order in the grid spacing.
+    #[must_use]
+    pub fn with_scatter(self, copies: &[f64], refinement: f64) -> Self {
+        let deviation = deviation(copies);
+        if deviation == 0.0 {
+            return self;
+        }
+        let finest = self.absolute / self.relative;
+        let absolute = self.absolute.hypot(COVERAGE * deviation / refinement);
+        Self { relative: absolute / finest, absolute, ..self }
+    }
+}
+
+/// Standard deviation of a sample; 0 for fewer than two values.
+fn deviation(values: &[f64]) -> f64 {
+    if values.len() < 2 {
+        return 0.0;
+    }
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (squares / (values.len() - 1) as f64).sqrt()
 }
 
 /// Kind of a series of three grids.

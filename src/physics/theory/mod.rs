@@ -39,6 +39,7 @@ pub(super) const CONSTANTS: &[Constant] = &[
     GRIDS[1],
     GRIDS[2],
     GRIDS[3],
+    GRIDS[4],
 ];
 
 /// Nayak's density of the reduced summit curvature in the limit used by Deng and Kesari. Eq A2.

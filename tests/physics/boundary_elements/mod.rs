@@ -10,6 +10,7 @@ mod peer;
 mod probe;
 mod reversals;
 mod rough;
+mod shifted;
 mod sphere;
 mod trapping;
 

@@ -92,8 +92,8 @@ impl Front {
 
     /// Factor λ of the energy of the line.
     pub(super) fn line_factor(&self) -> f64 {
-        // ∫φ Lφ dx = ∫(φ(x + 1) − φ(x))² dx, and 2 ∫(x − c) φ_x Lφ dx of the law, by the trapezoid rule, whose
-        // integrands vanish at both ends.
+        // ∫φ Lφ dx = ∫(φ(x + 1) − φ(x))² dx, and 2 ∫(x − c) φ_x Lφ dx of the law, by the trapezoid rule,
+        // whose integrands vanish at both ends.
         let (count, end) = (4000, self.line_reach + 1.0);
         let step = 2.0 * end / f64::from(count);
         let energy = |k: i32| {

@@ -49,6 +49,7 @@ pub(super) fn setup(
     let (elements, shortest_wavelength_m) = (of.options, length_m / wavelengths);
     let options = Options {
         points: lattice.points,
+        shift: elements.shift,
         attraction,
         law: match of.options.attraction.law() {
             Some(FrontLaw::Corrected) => Front::CORRECTED,
