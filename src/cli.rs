@@ -24,7 +24,7 @@ use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Simulate adhesion hysteresis of rough surfaces (JKR asperities, boundary elements)
+/// Simulate adhesion hysteresis of rough surfaces: asperities, boundary elements
 #[derive(Debug, Parser)]
 #[command(
     version, term_width = 80, next_line_help = true, help_template = help::template(),

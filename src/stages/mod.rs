@@ -38,6 +38,7 @@ mod sampling;
 mod scan_spectra;
 mod single_cycle;
 mod spectra;
+mod standings;
 mod surface;
 mod surface_row;
 mod task;

@@ -8,7 +8,7 @@ use super::aggregate::case_input;
 use super::cycle::lattice;
 use super::cycle_input::cycle_input;
 use super::grids::grid_rule;
-use super::sampling::{by_sizes_first, standings_by};
+use super::standings::{by_sizes_first, standings_by};
 use super::surface_row::SurfaceRow;
 use crate::campaign::{Campaign, CaseUnit, CycleUnit, Standing};
 use crate::spec::{CaseParams, MOST_PER_WAVELENGTH};

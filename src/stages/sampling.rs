@@ -7,7 +7,8 @@
 use super::StageError;
 use super::grids::cycle_results;
 use super::refining::refined;
-use crate::campaign::{Campaign, CycleUnit, Standing, SurfaceUnit};
+use super::standings::{by_sizes_first, standings_by};
+use crate::campaign::{Campaign, CycleUnit, Standing};
 use crate::model::Choice;
 use crate::spec::Until;
 use crate::stats::{Sample, Value};
@@ -55,29 +56,6 @@ fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
 /// If the tables of a finished cycle cannot be read.
 pub fn sampled(campaign: Campaign) -> Result<Campaign, StageError> {
     by_sizes_first(|check| sampled_by(campaign.clone(), check))
-}
-
-/// A result of finished cycles by the sizes of their files, and by their contents if a file cannot be read.
-pub(super) fn by_sizes_first<T>(of: impl Fn(Check) -> Result<T, StageError>) -> Result<T, StageError> {
-    of(Check::Sizes).or_else(|_| of(Check::Contents))
-}
-
-/// Status of all cycles. With the check of contents, those of damaged surfaces are not finished.
-pub(super) fn standings_by(campaign: &Campaign, check: Check) -> Vec<Standing> {
-    let mut standings = campaign.cycle_standings(check);
-    if check == Check::Contents {
-        let is_whole = |unit: &SurfaceUnit| {
-            [unit.surface(), unit.asperities()]
-                .iter()
-                .all(|of| campaign.standing(of, check) == Standing::Done)
-        };
-        let whole: Vec<bool> = campaign.surfaces.par_iter().map(is_whole).collect();
-        let done = campaign.cycles.iter().zip(&mut standings).filter(|(_, of)| **of == Standing::Done);
-        for (_, standing) in done.filter(|(unit, _)| !whole[unit.surface]) {
-            *standing = Standing::Planned;
-        }
-    }
-    standings
 }
 
 /// Unfinished cycles, if grids or realizations follow from their results; 0 otherwise.
