@@ -357,7 +357,7 @@ pub(super) static KEYS: &[Key] = &[
     key!(boundary_elements.opening in opening, "", "Where contact opens, with `attraction = \"bonded\"`.";
         word Opening),
     key!(boundary_elements.law in law, "", "Law of the edges of contact, with `attraction = \"bonded\"`. \
-         \"corrected\" reduces the errors of first order in the grid spacing, for 1.2 to 1.5 times the \
+         \"corrected\" reduces the errors of first order in the grid spacing, for 1.2 to 1.8 times the \
          transforms.";
         word FrontLaw),
     key!(boundary_elements.approach_step in elements.approach_step, "", "Step of the mean penetration, as a \
