@@ -53,6 +53,7 @@ mod scan;
 mod schema;
 #[cfg(feature = "stats")]
 mod several;
+#[cfg(feature = "stats")]
 mod shifted;
 #[cfg(feature = "stats")]
 mod sinusoid;
