@@ -266,8 +266,8 @@ pub(super) fn tally_json(ended: &Ended<'_>) -> String {
 pub(super) fn failed_cycles(failures: usize, dir: &Path) -> String {
     let them = if failures == 1 { "it" } else { "them" };
     format!(
-        "{} failed. Follow the help of the error and change the spec: without a change, a cycle fails \
-         again.\n\
+        "{} failed. Follow the help of the error and change the spec:\n\
+         without a change, a cycle fails again.\n\
          After a change of the program, `hysteron retry {}` reruns {them}.\n",
         counted(failures, "cycle"),
         shell_path(dir)
