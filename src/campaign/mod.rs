@@ -261,10 +261,7 @@ impl Campaign {
         let grid = case.params.elements().filter(|_| case.is_coarser_grid());
         grid.map_or_else(
             || unit.id.clone(),
-            |of| {
-                let kind = if case.is_shifted_copy() { "shifted copy" } else { "coarser grid" };
-                format!("{} ({kind} of {})", unit.id, of.grid_in_words())
-            },
+            |of| format!("{} ({} of {})", unit.id, case.kind_of_grid(), of.grid_in_words()),
         )
     }
 

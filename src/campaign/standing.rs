@@ -49,6 +49,12 @@ impl Standing {
         }
     }
 
+    /// True if a run leaves the task as it is: finished or failed.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        matches!(self, Self::Done | Self::Failed(_))
+    }
+
     /// Reason of a status, if it has one.
     #[must_use]
     pub fn why(&self) -> Option<&str> {

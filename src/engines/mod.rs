@@ -54,7 +54,7 @@ pub fn usual_shards(campaign: &Campaign) -> usize {
 pub fn open_shards(campaign: &Campaign, survey: &Survey, stage: Stage, count: usize) -> Vec<usize> {
     let mut open = vec![false; count];
     let mut enter = |surface: usize, standing: &Standing| {
-        if !matches!(standing, Standing::Done | Standing::Failed(_)) {
+        if !standing.is_settled() {
             open[surface % count] = true;
         }
     };

@@ -68,6 +68,12 @@ impl Case {
     pub fn is_shifted_copy(&self) -> bool {
         self.params.elements().is_some_and(|options| options.shift != 0.0)
     }
+
+    /// Words for a case that is only a coarser grid of others or its shifted copy.
+    #[must_use]
+    pub fn kind_of_grid(&self) -> &'static str {
+        if self.is_shifted_copy() { "shifted copy" } else { "coarser grid" }
+    }
 }
 
 impl CaseParams {

@@ -83,12 +83,11 @@ const SAME: f64 = 1.0 + 1e-6;
 /// The rows of a case: means over the surfaces of its finished and failed cycles. None if its scans differ in
 /// size.
 fn of_case(campaign: &Campaign, standings: &[Standing], case: usize) -> Result<Vec<Row>, StageError> {
-    let is_known = |standing: &Standing| matches!(standing, Standing::Done | Standing::Failed(_));
     let surfaces: Vec<_> = campaign
         .cycles
         .iter()
         .zip(standings)
-        .filter(|(cycle, standing)| cycle.case == case && is_known(standing))
+        .filter(|(cycle, standing)| cycle.case == case && standing.is_settled())
         .map(|(cycle, _)| &campaign.surfaces[cycle.surface])
         .collect();
     let all: Vec<Vec<LongWaves>> =

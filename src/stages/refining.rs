@@ -75,8 +75,7 @@ pub fn above_error(campaign: &Campaign) -> Result<Vec<AboveError>, StageError> {
 /// estimated grid error of their mean dissipated energies; nothing where it is unknown.
 fn known_errors(campaign: &Campaign, check: Check) -> Result<Vec<(usize, Option<f64>)>, StageError> {
     let standings = standings_by(campaign, check);
-    let is_open =
-        |(_, standing): &(&CycleUnit, &Standing)| !matches!(standing, Standing::Done | Standing::Failed(_));
+    let is_open = |(_, standing): &(&CycleUnit, &Standing)| !standing.is_settled();
     let open: HashSet<usize> =
         campaign.cycles.iter().zip(&standings).filter(is_open).map(|(unit, _)| unit.case).collect();
     let families: Vec<Option<CaseParams>> =

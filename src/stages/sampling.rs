@@ -55,18 +55,24 @@ fn enough(outcomes: &[Outcome], until: &Until) -> u32 {
 /// # Errors
 /// If the tables of a finished cycle cannot be read.
 pub fn sampled(campaign: Campaign) -> Result<Campaign, StageError> {
+    if !follows_from_results(&campaign) {
+        return Ok(campaign);
+    }
     by_sizes_first(|check| sampled_by(campaign.clone(), check))
+}
+
+/// True if grids or realizations follow from results.
+fn follows_from_results(campaign: &Campaign) -> bool {
+    campaign.spec.base.goal.error.is_some() || campaign.spec.realizations.until().is_some()
 }
 
 /// Unfinished cycles, if grids or realizations follow from their results; 0 otherwise.
 #[must_use]
 pub fn undecided(campaign: &Campaign, check: Check) -> usize {
-    let spec = &campaign.spec;
-    if spec.base.goal.error.is_none() && spec.realizations.until().is_none() {
+    if !follows_from_results(campaign) {
         return 0;
     }
-    let is_open = |standing: &&Standing| !matches!(standing, Standing::Done | Standing::Failed(_));
-    standings_by(campaign, check).iter().filter(is_open).count()
+    standings_by(campaign, check).iter().filter(|standing| !standing.is_settled()).count()
 }
 
 fn sampled_by(campaign: Campaign, check: Check) -> Result<Campaign, StageError> {

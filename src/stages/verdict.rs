@@ -4,7 +4,7 @@ use super::cost::Cost;
 use super::cycle::{Trial, cost, refusal};
 use super::estimates::target;
 use super::previews::{Known, Preview};
-use crate::campaign::{Campaign, CaseUnit, CycleUnit, Standing};
+use crate::campaign::{Campaign, CaseUnit, CycleUnit};
 use crate::model::Method;
 use crate::physics::theory::flattening::{Flattening, flattening};
 use crate::physics::theory::regime::{Regime, effective_adhesion};
@@ -76,10 +76,7 @@ pub(super) fn verdicts(campaign: &Campaign, previews: &Previews) -> Vec<Verdict>
         cycles[cycle.case].push(cycle);
     }
     let trial = Trial::default();
-    let is_open = |cycle: &CycleUnit| {
-        let standing = campaign.cycle_standing(cycle, Check::Sizes);
-        !matches!(standing, Standing::Done | Standing::Failed(_))
-    };
+    let is_open = |cycle: &CycleUnit| !campaign.cycle_standing(cycle, Check::Sizes).is_settled();
     let of = |(unit, cycles): (&CaseUnit, Vec<&CycleUnit>)| {
         // Each scan has its own error; all generated surfaces of a case have one.
         let is_measured = unit.case.params.surface.measured().is_some();

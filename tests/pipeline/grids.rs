@@ -8,7 +8,7 @@ use hysteron::store::Frame;
 use std::fs;
 
 /// Two surfaces of ζ = 4 on three grids: some seconds.
-const SPEC: &str = r#"
+pub const SPEC: &str = r#"
 name = "grids"
 seed = 7
 realizations = 2

@@ -2,6 +2,7 @@
 
 use crate::bench::{Bench, code, stderr, stdout};
 use crate::elements::{campaign, close, statistics};
+use crate::grids;
 use hysteron::campaign::{Campaign, CycleUnit};
 use hysteron::schema::{self, Table};
 use hysteron::spec::Spec;
@@ -11,25 +12,14 @@ use hysteron::store::Frame;
 use std::collections::BTreeSet;
 use std::fs;
 
-/// Two surfaces of ζ = 4 on three grids: some seconds.
-const PLAIN: &str = r#"
-name = "shifted"
-seed = 7
-realizations = 2
-[surface]
-magnification = 4
-[model]
-method = "boundary_elements"
-[boundary_elements]
-points = [16, 32, 64]
-approach_step = 0.1
-[cycle]
-max_load = [0.004]
-"#;
+/// The spec of coarser grids with one load.
+fn plain() -> String {
+    grids::SPEC.replace("[0.002, 0.004]", "[0.004]")
+}
 
 /// The same with two copies of the grid of 16 points.
 fn spec() -> String {
-    PLAIN.replace("approach_step", "shifted_copies = 2\napproach_step")
+    plain().replace("approach_step", "shifted_copies = 2\napproach_step")
 }
 
 const RESULTS: [(&str, &str); 3] = [("area_at_max_load", "area"), ("pull_off_load", "pull_off"), ("loss", "loss")];
@@ -64,7 +54,7 @@ fn keys(of: &Campaign) -> BTreeSet<String> {
 /// Copies are further tasks beside those of the list. They change the grid errors by their scatter, and nothing else in the tables.
 #[test]
 fn e2e_shifted_copies_change_the_grid_errors_alone() {
-    let bench = Bench::new(PLAIN);
+    let bench = Bench::new(&plain());
     assert_eq!(code(&bench.verb("run", &[])), 0);
     let tables: [&'static Table; 3] = [&schema::CASES, &schema::REALIZATIONS, &schema::GRIDS];
     let (before, without) = (tables.map(|table| statistics(&bench, table)), campaign(&bench));

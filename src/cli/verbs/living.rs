@@ -38,9 +38,7 @@ impl Living {
                 let of_stage =
                     *stage == Stage::ALL.into_iter().find(|stage| stage.word() == beat.stage).unwrap_or(from);
                 let holds = |id: &str| places.get(id).map_or(shard.is_whole(), |place| shard.holds(*place));
-                let open = |standing: &Standing| {
-                    !matches!(standing, Standing::Done | Standing::Failed(_) | Standing::Running)
-                };
+                let open = |standing: &Standing| !standing.is_settled() && *standing != Standing::Running;
                 for (id, standing) in units.iter_mut().filter(|(id, standing)| open(standing) && holds(id)) {
                     let runs = of_stage && (running.contains(id.as_str()) || *stage > Stage::Cycle);
                     *standing = if runs { Standing::Running } else { Standing::Waiting };
@@ -160,9 +158,5 @@ pub(super) type Units = Vec<(Stage, Vec<(String, Standing)>)>;
 
 /// The number of pending tasks.
 pub(super) fn left(units: &Units) -> usize {
-    units
-        .iter()
-        .flat_map(|(_, units)| units)
-        .filter(|(_, standing)| !matches!(standing, Standing::Done | Standing::Failed(_)))
-        .count()
+    units.iter().flat_map(|(_, units)| units).filter(|(_, standing)| !standing.is_settled()).count()
 }

@@ -10,7 +10,7 @@ use crate::citation::bibtex;
 use crate::cli::FolderArguments;
 use crate::model::{GeneratedSurface, SurfaceSource};
 use crate::schema::{self, Table};
-use crate::spec::{Case, CaseParams, GENERATED, MEASURED, NAMES, OF_ASPERITIES, REPLACED, WHERE_USED};
+use crate::spec::{CaseParams, GENERATED, MEASURED, NAMES, OF_ASPERITIES, REPLACED, WHERE_USED};
 use crate::stages::cycle_results;
 use crate::stats::{self, Given, grid_help, grid_percent, grid_verdict, significant, warnings_of};
 use crate::store::{Check, ColumnData, Found, Frame, Kept, parquet, read_receipt};
@@ -169,7 +169,7 @@ fn of_coarser_grid(
         results = of_first.map(|row| values(&frame, *row)).collect();
     }
     Ok(Shown {
-        kind: of_hidden(&unit.case),
+        kind: unit.case.kind_of_grid(),
         state: format!("{done}; for the grid error of case {}", finest.join(", ")),
         parameters: parameters(&unit.case.params),
         notes: notes(&unit.case.params),
@@ -177,11 +177,6 @@ fn of_coarser_grid(
         tasks,
         ..Shown::default()
     })
-}
-
-/// Kind of a case that is in no table of results.
-fn of_hidden(case: &Case) -> &'static str {
-    if case.is_shifted_copy() { "shifted copy" } else { "coarser grid" }
 }
 
 fn of_cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Shown, Fault> {
@@ -198,7 +193,7 @@ fn of_cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Shown, Fault> {
         let of_loads = cycle_results(campaign, unit).map_err(failed)?;
         results = of_loads.into_iter().map(|(max_load, of)| given(max_load, of)).collect();
     }
-    let of = if campaign.is_coarser_grid(unit) { of_hidden(&case.case) } else { "case" };
+    let of = if campaign.is_coarser_grid(unit) { case.case.kind_of_grid() } else { "case" };
     Ok(Shown {
         kind: Stage::Cycle.word(),
         state: format!("{}; {of} {}, surface {}", state(&standing), case.id, surface.id),

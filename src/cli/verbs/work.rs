@@ -182,7 +182,7 @@ fn perform(campaign: Campaign, task: &Task, json: bool, talk: TalkArguments) -> 
     interrupt::expect(teller.clone(), &campaign.dir).map_err(failed)?;
     let dir = campaign.dir.clone();
     let has_cycles = (task.from..=task.until).contains(&Stage::Cycle);
-    let is_open = |standing: &Standing| !matches!(standing, Standing::Done | Standing::Failed(_));
+    let is_open = |standing: &Standing| !standing.is_settled();
     if has_cycles && !talk.quiet && campaign.cycle_standings(Check::Sizes).iter().any(is_open) {
         let foreseen = foreseen(&campaign);
         let before = spectra::text(&campaign) + &probes::text(&campaign, &foreseen.verdicts);
