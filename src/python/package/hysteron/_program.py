@@ -150,12 +150,12 @@ def take(
     dict
         Output of `hysteron import --json`.
     """
-    told = {"dataset": dataset, "pixel-m": pixel_m, "size": size, "unit": unit, "skip-lines": skip_lines, "width": width}
-    told |= {"detrend": detrend, "filter": filter, "points": points}
+    options = {"dataset": dataset, "pixel-m": pixel_m, "size": size, "unit": unit, "skip-lines": skip_lines, "width": width}
+    options |= {"detrend": detrend, "filter": filter, "points": points}
     command = [str(find()), "import", "--json"]
     command += ["--dry-run"] if out is None else [f"--out={os.fspath(out)}"]
-    told |= {"fast-axis": fast_axis, "tip-radius": tip_radius_m}
-    command += [f"--{name}={value}" for name, value in told.items() if value is not None]
+    options |= {"fast-axis": fast_axis, "tip-radius": tip_radius_m}
+    command += [f"--{name}={value}" for name, value in options.items() if value is not None]
     flags = {"transpose": transpose, "fill": fill, "periodic": periodic, "force": force, "outliers": outliers, "align-rows": align_rows}
     command += [f"--{name}" for name, asked in flags.items() if asked]
     with _scan(file) as (path, temporary):
