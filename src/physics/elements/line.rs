@@ -2,34 +2,26 @@
 //! negative Laplacian `L` of 9 points. [Front](super::law::Front) has its derivation.
 
 use super::grid::half_space::HalfSpace;
-use super::law::Profile;
+use super::law::{Law, Profile};
 
-/// Energy and tension of the line at a point.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct LineBond {
-    /// Energy \[E* dx\].
-    pub(crate) energy: f64,
-    /// Tension \[E*\].
-    pub(crate) tension: f64,
+/// Tension of the line at a point of a law that has one \[E*\].
+pub(crate) fn line_tension(
+    grid: &HalfSpace,
+    law: &Law,
+    point: usize,
+    profile: impl Fn(usize) -> Profile,
+) -> f64 {
+    let rate = profile(point).rate;
+    if rate == 0.0 { 0.0 } else { law.line_factor() * rate * bend(grid, point, |k| profile(k).value) }
 }
 
-/// Energy and tension of the line at a point, with the `factor` 2λΔγ \[E* dx\].
-pub(crate) fn line_bond(
-    grid: &HalfSpace,
-    point: usize,
-    factor: f64,
-    profile: impl Fn(usize) -> Profile,
-) -> LineBond {
+/// `Lφ` at a point, from the values of φ.
+pub(crate) fn bend(grid: &HalfSpace, point: usize, value: impl Fn(usize) -> f64) -> f64 {
     let (rows, columns) = (grid.rows(), grid.columns());
-    let (row, column) = (point / columns, point % columns);
-    let here = profile(point);
-    let columns_beside = beside(column, columns, grid.is_patch());
-    let values = beside(row, rows, grid.is_patch())
-        .map(|row| columns_beside.map(|column| profile(row * columns + column).value));
-    let [up, [left, _, right], down] = values;
-    let middle = [left, here.value, right];
-    let bend = laplacian([&up, &middle, &down], [0, 1, 2]);
-    LineBond { energy: 0.5 * factor * here.value * bend, tension: factor * here.rate * bend }
+    let columns_beside = beside(point % columns, columns, grid.is_patch());
+    let [up, here, down] = beside(point / columns, rows, grid.is_patch())
+        .map(|row| columns_beside.map(|column| value(row * columns + column)));
+    laplacian([&up, &here, &down], [0, 1, 2])
 }
 
 /// The places before, at and after a place: across the edges of a periodic grid, and the border itself beyond

@@ -14,8 +14,8 @@ use super::grid::half_space::{HalfSpace, Operator, Waves};
 use super::grid::medium::Medium;
 use super::grid::sums::{grain, sums};
 pub use super::law::Bonding;
-use super::law::{Bond, Law};
-use super::line::{LineBond, line_bond};
+use super::law::{Bond, Law, Profile};
+use super::line::{bend, line_tension};
 use super::numerics::Numerics;
 use crate::PhysicsError;
 use crate::memory::filled;
@@ -182,19 +182,29 @@ impl Problem {
         state.displacement[point] - state.mean_penetration - self.heights[point]
     }
 
-    /// Energy and tension of the line at a point.
-    fn line(&self, state: &State, point: usize) -> LineBond {
-        if !self.law.has_line() || state.bonds[point] == Bonding::Free {
-            return LineBond::default();
+    /// Step φ of the line at a point.
+    fn profile(&self, state: &State, point: usize) -> Profile {
+        self.law.profile(state.bonds[point], self.gap(state, point))
+    }
+
+    /// Tension of the line at a point \[E*\].
+    pub(super) fn line_tension(&self, state: &State, point: usize) -> f64 {
+        if !self.law.has_line() {
+            return 0.0;
         }
-        let profile = |k: usize| self.law.profile(state.bonds[k], self.gap(state, k));
-        line_bond(&self.half_space, point, self.law.line_factor(), profile)
+        line_tension(&self.half_space, &self.law, point, |k| self.profile(state, k))
+    }
+
+    /// Step φ of the line at all points; none without a line.
+    fn profiles(&self, state: &State) -> Vec<Profile> {
+        let points = if self.law.has_line() { self.half_space.points() } else { 0 };
+        (0..points).into_par_iter().with_min_len(grain(1)).map(|k| self.profile(state, k)).collect()
     }
 
     /// Tension of a point in equilibrium \[E*\].
     #[must_use]
     pub fn tension(&self, state: &State, point: usize) -> f64 {
-        self.bond(state.bonds[point], self.gap(state, point)).tension + self.line(state, point).tension
+        self.bond(state.bonds[point], self.gap(state, point)).tension + self.line_tension(state, point)
     }
 
     /// Distance of the surfaces at a point \[dx\]: the gap of the law, less the displacement of a wall that
@@ -210,14 +220,21 @@ impl Problem {
     #[must_use]
     pub fn totals(&self, state: &State) -> Totals {
         let points = self.half_space.points();
+        let (profiles, factor) = (self.profiles(state), self.law.line_factor());
+        let bend = |k: usize| match profiles.get(k) {
+            Some(here) if here.value != 0.0 || here.rate != 0.0 => {
+                bend(&self.half_space, k, |k| profiles[k].value)
+            }
+            _ => 0.0,
+        };
         let [load, elastic, adhesive, contact] = sums::<4>(points, |range, sum| {
             for k in range {
                 let gap = self.gap(state, k);
                 let bond = self.bond(state.bonds[k], gap);
-                let line = self.line(state, k);
-                sum[0] -= bond.tension + line.tension;
+                let (bend, of) = (bend(k), profiles.get(k).copied().unwrap_or_default());
+                sum[0] -= bond.tension + factor * of.rate * bend;
                 sum[1] += state.displacement[k] * state.pressure[k];
-                sum[2] += bond.energy + line.energy;
+                sum[2] += bond.energy + 0.5 * factor * of.value * bend;
                 sum[3] += f64::from(u8::from(self.touches(state.bonds[k], gap)));
             }
         });

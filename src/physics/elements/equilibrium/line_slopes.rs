@@ -1,6 +1,6 @@
 //! Second derivatives of the energy of the line, for Newton's method and the rate of an equilibrium.
 
-use super::line::{BAND, Gaps, sweep};
+use super::line::{BAND, Gaps, Sweep};
 use super::minimise::Minimiser;
 use super::passes::Stride;
 use crate::elements::line::{beside, laplacian};
@@ -25,18 +25,15 @@ impl Minimiser {
         };
         let stride = Stride { length: 0.0, mean: 0.0, centre: 0.0 };
         let bands = slopes.par_chunks_mut(BAND * columns).zip(rates.par_chunks_mut(BAND * columns));
-        bands.enumerate().for_each(|(band, (slopes, rates))| {
+        bands.enumerate().for_each_init(Sweep::default, |sweep, (band, (slopes, rates))| {
             let first = band * BAND;
-            sweep(problem, from, stride, first..first + slopes.len() / columns, |row, rows| {
+            sweep.band(problem, from, stride, first..first + slopes.len() / columns, |row, rows| {
                 let here = (row - first) * columns;
-                for (k, of) in rows[1].of.iter().enumerate() {
+                rates[here..here + columns].fill(0.0);
+                for (k, of) in rows[1].places.iter().map(|k| *k as usize).zip(&rows[1].profiles) {
                     rates[here + k] = of.rate as f32;
-                    if of.rate != 0.0 {
-                        let bend =
-                            laplacian(rows.map(|row| row.value.as_slice()), beside(k, columns, is_patch));
-                        slopes[here + k] +=
-                            (factor * (of.bend * bend - of.rate * of.rate) - of.excess) as f32;
-                    }
+                    let bend = laplacian(rows.map(|row| row.value.as_slice()), beside(k, columns, is_patch));
+                    slopes[here + k] += (factor * (of.bend * bend - of.rate * of.rate) - of.excess) as f32;
                 }
             });
         });

@@ -211,10 +211,16 @@ struct Block {
     before: [f32; BLOCK],
     /// 1 where the law itself has to be evaluated.
     curved: [u8; BLOCK],
+    /// Bonds of these points one after another, their gaps at the beginning, before and after the step, and
+    /// the change of their tension, its slope, and the change of their energy beyond first order.
+    bonds: [Bonding; BLOCK],
+    gaps: [[f64; BLOCK]; 3],
+    changes: [[f32; BLOCK]; 3],
 }
 
 /// Moves the points of a row along the direction, to which `response` is the elastic response, and evaluates
-/// the law at them.
+/// the law at them. With a line tension the sums over the gradient are those of
+/// [`add_line`](super::line::add_line), which changes it.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 pub(crate) fn advance(
     points: &mut Points<'_>,
@@ -225,7 +231,13 @@ pub(crate) fn advance(
 ) -> Found {
     let mut found = Found::default();
     let mut beyond = vec![0.0; points.gap.len()];
-    let mut block = Block { before: [0.0; BLOCK], curved: [0; BLOCK] };
+    let mut block = Block {
+        before: [0.0; BLOCK],
+        curved: [0; BLOCK],
+        bonds: [Bonding::Free; BLOCK],
+        gaps: [[0.0; BLOCK]; 3],
+        changes: [[0.0; BLOCK]; 3],
+    };
     for (part, beyond) in beyond.chunks_mut(BLOCK).enumerate() {
         let range = part * BLOCK..part * BLOCK + beyond.len();
         let mut points = points.part(range.clone());
@@ -234,11 +246,20 @@ pub(crate) fn advance(
         if curved && let Some(smooth) = pieces.smooth {
             curved = bend(&mut points, stride, smooth, beyond, &mut block);
         }
-        if curved {
-            for k in (0..beyond.len()).filter(|k| block.curved[*k] != 0) {
-                beyond[k] = curve(&mut points, k, block.before[k], stride.centre, law);
+        match law {
+            _ if !curved => {}
+            // Bonded points alone are on the curve of this law.
+            Law::Crack(law) => curve(&mut points, stride.centre, |_, gap| law.at(gap), beyond, &mut block),
+            Law::Morse(_) => {
+                let bond = |bonding, gap| law.bond(bonding, gap);
+                curve(&mut points, stride.centre, bond, beyond, &mut block);
             }
         }
+    }
+    if law.has_line() {
+        let fields = [&*beyond, response, points.direction];
+        [found.beyond, found.curvature] = panel_sums(fields, |[beyond, k, d]| [beyond, k * d]);
+        return found;
     }
     let fields = [&*points.gradient, &beyond, response, points.direction];
     [found.gradient[0], found.gradient[1], found.beyond, found.slope, found.curvature] =
@@ -329,12 +350,39 @@ fn bend(points: &mut Points<'_>, stride: Stride, law: Smooth, beyond: &mut [f32]
     any_curved != 0
 }
 
-/// Replaces the spring by the law at a point: the change of its energy beyond first order.
-fn curve(points: &mut Points<'_>, k: usize, before: f32, centre: f32, law: &Law) -> f32 {
-    let gaps = [points.gap[k], before, points.gap[k] + points.displacement[k]].map(f64::from);
-    let [begin, before, after]: [Bond; 3] = gaps.map(|gap| law.bond(points.bonds[k], gap));
-    points.gradient[k] =
-        points.residual[k] + points.pressure[k] - centre + (after.tension - begin.tension) as f32;
-    points.slopes[k] = after.slope as f32;
-    (after.energy - before.energy - before.tension * (gaps[2] - gaps[1])) as f32
+/// Replaces the spring by the law at the points of a block that are on its curve.
+#[inline(always)]
+fn curve(
+    points: &mut Points<'_>,
+    centre: f32,
+    bond: impl Fn(Bonding, f64) -> Bond,
+    beyond: &mut [f32],
+    block: &mut Block,
+) {
+    let n = beyond.len();
+    let (mut places, mut count) = ([0_u8; BLOCK], 0);
+    for k in 0..n {
+        places[count % BLOCK] = k as u8;
+        count += usize::from(block.curved[k] != 0);
+    }
+    let Block { before, bonds, gaps, changes: [tension, slope, energy], .. } = block;
+    let places = places[..count].iter().map(|k| usize::from(*k)).enumerate();
+    for (j, k) in places.clone() {
+        let after = points.gap[k] + points.displacement[k];
+        [gaps[0][j], gaps[1][j], gaps[2][j]] = [points.gap[k], before[k], after].map(f64::from);
+        bonds[j] = points.bonds[k];
+    }
+    for j in 0..count {
+        let [begin, before, after] = [gaps[0][j], gaps[1][j], gaps[2][j]];
+        let (first, old, new) =
+            (bond(bonds[j], begin).tension, bond(bonds[j], before), bond(bonds[j], after));
+        tension[j] = (new.tension - first) as f32;
+        slope[j] = new.slope as f32;
+        energy[j] = (new.energy - old.energy - old.tension * (after - before)) as f32;
+    }
+    for (j, k) in places {
+        points.gradient[k] = points.residual[k] + points.pressure[k] - centre + tension[j];
+        points.slopes[k] = slope[j];
+        beyond[k] = energy[j];
+    }
 }

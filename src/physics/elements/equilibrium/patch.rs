@@ -17,7 +17,7 @@ use super::minimise::{Accuracy, LocalRelaxation, Minimiser, WorkingState};
 use super::places::{Place, Region, SMALLEST_SIDE, places};
 use crate::PhysicsError;
 use crate::elements::grid::half_space::HalfSpace;
-use crate::elements::line::line_bond;
+use crate::elements::line::line_tension;
 use crate::elements::problem::{Attraction, Bonding, Problem, State};
 use crate::memory::filled;
 use rayon::prelude::*;
@@ -259,16 +259,15 @@ impl Patch {
             let gap = on.displacement(at) - on.state.mean_penetration - on.problem.heights[at];
             law.profile(on.state.bonds[at], gap)
         };
-        let of_patch = |k: usize| law.profile(self.state.bonds[k], self.problem.gap(&self.state, k));
         let is_border = |k: usize| [k / side, k % side].iter().any(|at| *at == 0 || *at == side - 1);
-        let (factor, grid) = (law.line_factor(), &on.problem.half_space);
+        let grid = &on.problem.half_space;
         let held: Vec<(usize, f64)> = self
             .points(grid, place)
             .enumerate()
             .filter(|(k, _)| is_border(*k))
             .map(|(k, at)| {
-                let whole = line_bond(grid, at, factor, of_grid).tension;
-                (k, whole - line_bond(&self.problem.half_space, k, factor, of_patch).tension)
+                let whole = line_tension(grid, law, at, of_grid);
+                (k, whole - self.problem.line_tension(&self.state, k))
             })
             .collect();
         held.into_iter().for_each(|(k, tension)| self.state.pressure[k] += tension);

@@ -63,11 +63,20 @@ pub(crate) fn panel_sums<const M: usize, const N: usize>(
                 }
             }
         }
-        sum.iter_mut()
-            .zip(lanes)
-            .for_each(|(to, lanes)| *to += lanes.into_iter().map(f64::from).sum::<f64>());
+        // Side by side, since each addition waits for the one before.
+        let mut run_sum = [0.0; N];
+        for lane in 0..LANES.min(end - run) {
+            run_sum.iter_mut().zip(&lanes).for_each(|(to, lanes)| *to += f64::from(lanes[lane]));
+        }
+        sum.iter_mut().zip(run_sum).for_each(|(to, part)| *to += part);
     }
     sum
+}
+
+/// The larger of two numbers, `a` if `b` is none.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
 }
 
 /// Largest magnitude on one panel.
@@ -76,10 +85,14 @@ pub(crate) fn panel_largest(field: &[f32]) -> f64 {
     let mut most = [0.0_f32; LANES];
     for part in field.chunks(LANES) {
         for (most, value) in most.iter_mut().zip(part) {
-            *most = most.max(value.abs());
+            *most = larger(*most, value.abs());
         }
     }
-    f64::from(most.into_iter().fold(0.0, f32::max))
+    for width in (0..LANES.ilog2()).rev().map(|power| 1 << power) {
+        let (first, second) = most.split_at_mut(width);
+        first.iter_mut().zip(second).for_each(|(a, b)| *a = larger(*a, *b));
+    }
+    f64::from(most[0])
 }
 
 /// Scalar product.

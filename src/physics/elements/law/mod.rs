@@ -24,6 +24,7 @@
 mod crack;
 mod front;
 pub(crate) mod morse;
+mod table;
 
 pub use crack::{Crack, Profile};
 pub use front::Front;
@@ -129,7 +130,7 @@ impl Law {
     /// True if fronts have a line tension.
     #[must_use]
     pub fn has_line(&self) -> bool {
-        matches!(self, Self::Crack(law) if law.line.is_some())
+        matches!(self, Self::Crack(law) if law.table.line.is_some())
     }
 
     /// Factor `2λΔγ` of the tension by the curvature of the front \[E* dx\].
@@ -184,7 +185,7 @@ impl Law {
     pub fn sealed(&self, gap: f64) -> Bond {
         match self {
             Self::Crack(law) => Bond {
-                energy: 0.5 * WALL_STIFFNESS * gap * gap - law.unit * law.unit * law.depth,
+                energy: 0.5 * WALL_STIFFNESS * gap * gap - law.unit * law.unit * law.table.depth,
                 tension: WALL_STIFFNESS * gap,
                 slope: WALL_STIFFNESS,
             },
@@ -225,7 +226,7 @@ impl Law {
     #[must_use]
     pub fn spring_gap(&self) -> f64 {
         match self {
-            Self::Crack(law) => law.onset * law.unit,
+            Self::Crack(law) => law.table.onset * law.unit,
             Self::Morse(_) => 0.0,
         }
     }
@@ -265,7 +266,7 @@ impl Law {
     #[must_use]
     pub fn contact_gap(&self) -> f64 {
         match self {
-            Self::Crack(law) => law.edge * law.unit,
+            Self::Crack(law) => law.table.edge * law.unit,
             Self::Morse(law) => law.range * std::f64::consts::LN_2,
         }
     }
@@ -275,7 +276,7 @@ impl Law {
     #[must_use]
     pub fn true_contact_gap(&self) -> f64 {
         match self {
-            Self::Crack(law) => law.true_edge * law.unit,
+            Self::Crack(law) => law.table.true_edge * law.unit,
             Self::Morse(_) => self.contact_gap(),
         }
     }
@@ -293,7 +294,7 @@ impl Law {
     #[must_use]
     pub fn end_gap(&self) -> f64 {
         match self {
-            Self::Crack(law) => law.end() * law.unit,
+            Self::Crack(law) => law.table.end * law.unit,
             Self::Morse(law) => 15.0 * law.range,
         }
     }
