@@ -50,6 +50,12 @@
     const [unit, scale] = [["GPa", 1e9], ["MPa", 1e6], ["kPa", 1e3]].find((of) => Math.abs(value) >= of[1]) || ["Pa", 1];
     return number(value / scale) + " " + unit;
   };
+  // Prefix and its factor for values up to a magnitude.
+  const prefix = (most) => [["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12]].find((of) => most >= of[1]) || ["f", 1e-15];
+  const metric = (value, unit) => {
+    const [letter, scale] = value ? prefix(Math.abs(value)) : ["", 1];
+    return `${number(value / scale)} ${letter}${unit}`;
+  };
   // Text with the subscripts of symbols, in HTML and in drawings.
   const parts = (text) => text.split(/_(rms|max)/);
   const rich = (element, text) => (element.replaceChildren(...parts(text).map((part, n) => (n % 2 ? html("sub", {}, part) : part))), element);
@@ -175,7 +181,7 @@
     const load = loop().load;
     choose(Number(value), Math.max(0, cycles[value].loops.findIndex((of) => of.load === load)));
   });
-  const [loopChoice, loopLabel] = choice("load", "F_max/(E*A₀)", (value) => choose(state.cycle, Number(value)));
+  const [loopChoice, loopLabel] = choice("load", "F_max", (value) => choose(state.cycle, Number(value)));
   const [smallestChoice, smallestLabel] = choice("smallest", "avalanches of at least", (value) => (state.smallest = Number(value)));
   const [layerChoice, layerLabel] = choice("layer", "Boundary elements", (value) => { state.layer = value; draw(); });
   for (const [value, text] of [[1, "1 event"], [2, "2 events"], [5, "5 events"], [10, "10 events"]]) smallestChoice.append(html("option", { value }, text));
@@ -230,6 +236,10 @@
   slider.addEventListener("input", () => move(Number(slider.value)));
   absorbedBox.addEventListener("change", () => { state.absorbed = absorbedBox.checked; draw(); });
   const cycle = () => cycles[state.cycle];
+  // Load, penetration and energy: of a probe in their units.
+  const force = (value) => (cycle().probe ? "F = " + metric(value * cycle().probe.unit_n, "N") : "F/(E*A₀) = " + number(value));
+  const depth = (value) => (cycle().probe ? "Δ = " + metric(value * cycle().probe.unit_m, "m") : "Δ/h_rms = " + number(value));
+  const dissipated = (value) => (cycle().probe ? "dissipated energy " + metric(value * cycle().probe.unit_n * cycle().probe.unit_m, "J") : "dissipated energy/(E*A₀h_rms) = " + number(value));
   const loop = () => cycle().loops[state.loop];
   const partner = () => (cycle().other === undefined ? undefined : cycles[cycle().other]);
   const partnerLoop = () => partner() && partner().loops.find((of) => of.load === loop().load);
@@ -258,12 +268,17 @@
     };
     const foot = frame.top + frame.height;
     chart.replaceChildren(svg("rect", { width: 420, height: 400, fill: "white" }), svg("rect", { x: frame.left, y: frame.top, width: frame.width, height: frame.height, fill: "none", stroke: "black" }));
-    for (const value of ticks(...x)) chart.append(svg("path", { d: `M${axes.x(value)} ${foot}v5`, stroke: "black" }), svg("text", { x: axes.x(value), y: foot + 19, "text-anchor": "middle", "font-size": 13 }, number(value)));
-    const power = Math.floor(Math.log10(Math.max(Math.abs(y[0]), Math.abs(y[1]))));
-    for (const value of ticks(...y)) chart.append(svg("path", { d: `M${frame.left} ${axes.y(value)}h-5`, stroke: "black" }), svg("text", { x: frame.left - 8, y: axes.y(value) + 4.5, "text-anchor": "end", "font-size": 13 }, number(value / 10 ** power)));
-    const label = svg("text", { transform: `translate(18 ${frame.top + frame.height / 2}) rotate(-90)`, "text-anchor": "middle", "font-size": 15 }, "F/(E*A₀)");
-    label.append(svg("tspan", {}, "  [10"), svg("tspan", { dy: -5, "font-size": 11 }, String(power).replace("-", "−")), svg("tspan", { dy: 5 }, "]"));
-    chart.append(label, drawn(svg("text", { x: frame.left + frame.width / 2, y: 388, "text-anchor": "middle", "font-size": 15 }), "Δ/h_rms"));
+    // Units of the axes: those of a probe with a prefix, else a power of ten of the load.
+    const most = (of) => Math.max(Math.abs(of[0]), Math.abs(of[1]));
+    const unit = cycle().probe;
+    const [[xLetter, xScale], [yLetter, yScale]] = unit ? [prefix(most(x) * unit.unit_m), prefix(most(y) * unit.unit_n)] : [["", 1], ["", 1]];
+    const power = Math.floor(Math.log10(most(y)));
+    const [xUnit, yUnit] = unit ? [xScale / unit.unit_m, yScale / unit.unit_n] : [1, 10 ** power];
+    for (const value of ticks(x[0] / xUnit, x[1] / xUnit)) chart.append(svg("path", { d: `M${axes.x(value * xUnit)} ${foot}v5`, stroke: "black" }), svg("text", { x: axes.x(value * xUnit), y: foot + 19, "text-anchor": "middle", "font-size": 13 }, number(value)));
+    for (const value of ticks(y[0] / yUnit, y[1] / yUnit)) chart.append(svg("path", { d: `M${frame.left} ${axes.y(value * yUnit)}h-5`, stroke: "black" }), svg("text", { x: frame.left - 8, y: axes.y(value * yUnit) + 4.5, "text-anchor": "end", "font-size": 13 }, number(value)));
+    const label = svg("text", { transform: `translate(18 ${frame.top + frame.height / 2}) rotate(-90)`, "text-anchor": "middle", "font-size": 15 }, unit ? `F [${yLetter}N]` : "F/(E*A₀)");
+    if (!unit) label.append(svg("tspan", {}, "  [10"), svg("tspan", { dy: -5, "font-size": 11 }, String(power).replace("-", "−")), svg("tspan", { dy: 5 }, "]"));
+    chart.append(label, drawn(svg("text", { x: frame.left + frame.width / 2, y: 388, "text-anchor": "middle", "font-size": 15 }), unit ? `Δ [${xLetter}m]` : "Δ/h_rms"));
     const [grey, ring] = [partnerLoop() ? "; grey: the other method on this surface" : "", elementsLoop() ? ". Ring: stored map of boundary elements" : ""];
     chartNote.textContent = `Loop: loading dashed, unloading solid${grey}${ring}. A click moves to the nearest step.`;
     for (const of of loops.slice().reverse()) {
@@ -285,7 +300,7 @@
   chart.addEventListener("pointermove", (event) => {
     const k = nearest(event);
     const tip = document.getElementById("explorer-tip");
-    drawn(tip, `step ${loop().s[k]}: Δ/h_rms = ${number(loop().d[k])}, F/(E*A₀) = ${number(loop().f[k])}`);
+    drawn(tip, `step ${loop().s[k]}: ${depth(loop().d[k])}, ${force(loop().f[k])}`);
   });
 
   // Maps.
@@ -352,7 +367,7 @@
     field.append(svg("image", { id: "explorer-field-image", style: "image-rendering:pixelated", href: best[key], width: SIDE, height: SIDE, preserveAspectRatio: "none", "data-step": other.s[best.k] }), bar(field));
     const dot = document.getElementById("explorer-map-dot");
     for (const [name, value] of [["cx", axes.x(other.d[best.k])], ["cy", axes.y(other.f[best.k])], ["r", 6]]) dot.setAttribute(name, value);
-    rich(fieldNote, `Boundary elements, ${best.k < other.up ? "loading" : "unloading"}: nearest stored map, Δ/h_rms = ${number(other.d[best.k])}, F/(E*A₀) = ${number(other.f[best.k])}. ` +
+    rich(fieldNote, `Boundary elements, ${best.k < other.up ? "loading" : "unloading"}: nearest stored map, ${depth(other.d[best.k])}, ${force(other.f[best.k])}. ` +
       (state.layer === "gap" ? `Gap from 0 (dark) to ${length(best.gap_m)} (light).` : `Pressure from ${pascal(best.low_pa)} (red) to ${pascal(best.high_pa)} (blue).`));
   };
   const draw = () => {
@@ -369,8 +384,8 @@
     const said = Array.from(counts, ([kind, count]) => `${count} × ${names[kind]}`).join(", ");
     const energy = own.reduce((sum, event) => sum + event[4], 0);
     const place = state.avalanche < 0 ? "at this step" : `avalanche ${state.avalanche}`;
-    rich(readout, `Step ${of.s[state.k]}, ${branch}: F/(E*A₀) = ${number(of.f[state.k])}, Δ/h_rms = ${number(of.d[state.k])}, A/A₀ = ${number(of.a[state.k])}, ${of.n[state.k]} contact${of.n[state.k] === 1 ? "" : "s"}. ` +
-      `Events, ${place}: ${own.length ? said + `; dissipated energy/(E*A₀h_rms) = ${number(energy)}` : "none"}.`);
+    rich(readout, `Step ${of.s[state.k]}, ${branch}: ${force(of.f[state.k])}, ${depth(of.d[state.k])}, A/A₀ = ${number(of.a[state.k])}, ${of.n[state.k]} contact${of.n[state.k] === 1 ? "" : "s"}. ` +
+      `Events, ${place}: ${own.length ? said + `; ${dissipated(energy)}` : "none"}.`);
     const field = elementsLoop();
     mapFigure.hidden = !cycle().x;
     fieldFigure.hidden = layerLabel.hidden = !field;
@@ -403,7 +418,7 @@
   const choose = (chosen, which) => {
     stop();
     Object.assign(state, { cycle: chosen, loop: which, avalanche: -1 });
-    loopChoice.replaceChildren(...cycle().loops.map((of, n) => html("option", { value: n }, number(of.load, 4))));
+    loopChoice.replaceChildren(...cycle().loops.map((of, n) => html("option", { value: n }, cycle().probe ? metric(of.load * cycle().probe.unit_n, "N") : number(of.load, 4) + " E*A₀")));
     loopChoice.value = which;
     cycleChoice.value = chosen;
     cycle().loops.forEach((of) => prepare(cycle(), of));

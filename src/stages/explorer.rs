@@ -176,7 +176,11 @@ fn cycle(campaign: &Campaign, unit: &CycleUnit) -> Result<Value, StageError> {
     };
     let (header, heights) = read_surface(&campaign.surface_path(surface))?;
     let mut of = json!({ "id": unit.id, "length_m": header.length_m });
-    let energy = params.material.contact_modulus_pa * header.length_m.powi(2) * header.rms_height_m;
+    let force = params.material.contact_modulus_pa * header.length_m.powi(2);
+    let energy = force * header.rms_height_m;
+    if params.probe.is_some() {
+        of["probe"] = json!({ "unit_n": force, "unit_m": header.rms_height_m });
+    }
     let mut spots = Spots::default();
     if is_there(MAPS) {
         of["loops"] = loops(&tables, &spots, energy, header.length_m)?;

@@ -72,7 +72,8 @@ pub fn above_error(campaign: &Campaign) -> Result<Vec<AboveError>, StageError> {
 }
 
 /// Cases by boundary elements whose cycles are finished on all grids, by their places, with the largest
-/// estimated grid error of their mean dissipated energies; nothing where it is unknown.
+/// estimated grid error of their mean dissipated energies at the loads that are reached; nothing where it is
+/// unknown.
 fn known_errors(campaign: &Campaign, check: Check) -> Result<Vec<(usize, Option<f64>)>, StageError> {
     let standings = standings_by(campaign, check);
     let is_open = |(_, standing): &(&CycleUnit, &Standing)| !standing.is_settled();
@@ -96,8 +97,10 @@ fn known_errors(campaign: &Campaign, check: Check) -> Result<Vec<(usize, Option<
     let means = stats::cases(&loops, &cases)?;
     let means = stats::with_grid_errors(&loops, &means, &cases, grid_rule)?.cases;
     let (ids, errors) = (means.text("case_id")?, means.f64_or_null("loss_grid_error")?);
+    let done = means.i64("done_count")?;
     let error = |place: usize| {
-        let rows = (0..ids.len()).filter(|row| ids[*row] == campaign.cases[place].id);
+        // A load that no cycle has reached has no loss, and no error.
+        let rows = (0..ids.len()).filter(|row| ids[*row] == campaign.cases[place].id && done[*row] > 0);
         let of_loads: Option<Vec<f64>> = rows.map(|row| errors[row]).collect();
         of_loads.and_then(|errors| errors.into_iter().reduce(f64::max))
     };

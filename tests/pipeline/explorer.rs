@@ -145,6 +145,26 @@ fn e2e_the_slider_moves_the_contact_map() {
     avalanche(&bench, &page, &of);
 }
 
+/// Loads and penetrations of a probe have their units, as in its tables: a load reversal of 1 µN.
+#[test]
+fn e2e_the_explorer_of_a_probe_is_in_newtons() {
+    let bench = Bench::new(
+        "name = \"tip\"\nrealizations = 1\nsurface.length_m = 4e-5\nsurface.rms_height_m = 1e-9\nsurface.magnification = 4\n\
+         surface.points_per_shortest_wavelength = 8\nprobe.radius_m = 2e-5\nmaterial.work_of_adhesion_j_m2 = 0.03\ncycle.max_force_n = [1e-6]\n",
+    );
+    assert_eq!(code(&bench.verb("run", &[])), 0);
+    let page = fs::read_to_string(bench.out().join("report.html")).unwrap();
+    let Some(driven) = after(&page, bench.folder.path(), &moved(0)) else {
+        skip("browser", "no Chromium or Chrome: the explorer is not driven");
+        return;
+    };
+    let readout = text(&driven, "explorer-readout");
+    assert!(readout.contains(": F = ") && readout.contains("N, Δ = ") && !readout.contains("E*"), "{readout}");
+    let [chart, loads] = ["explorer-chart", "explorer-load"].map(|id| driven.split(&format!("id=\"{id}\"")).nth(1).unwrap());
+    assert!(chart.contains("F [µN]") && chart.contains("Δ [nm]"), "{}", &chart[..2000]);
+    assert!(loads.split("</select>").next().unwrap().contains("1 µN"));
+}
+
 /// A click shows the events of the next avalanche, and no others.
 fn avalanche(bench: &Bench, page: &str, of: &Loop) {
     let script = format!("{} set('explorer-smallest', 1, 'change'); document.getElementById('explorer-next-avalanche').click();", moved(1));

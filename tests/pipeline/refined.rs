@@ -217,6 +217,20 @@ fn e2e_an_error_that_is_not_reached_is_a_warning() {
     assert!(stdout(&run).contains("cycle     2 of 8 computed, 6 done before"), "{}", stdout(&run));
 }
 
+/// A load that no surface reaches has no grid error, and the grids are refined for the others.
+#[test]
+fn e2e_grids_are_refined_for_the_loads_that_are_reached() {
+    let text = "name = \"flat\"\nrealizations = 1\nsurface.magnification = 2\nsurface.rms_height_m = 2e-7\n\
+                model.method = \"boundary_elements\"\nboundary_elements.error = 0.005\nboundary_elements.max_points = 32\n\
+                boundary_elements.opening = \"edges\"\nmaterial.work_of_adhesion_j_m2 = 1e-6\ncycle.max_load = [5e-5, 0.01]\n";
+    let bench = Bench::new(text);
+    let run = bench.verb("run", &[]);
+    assert_eq!(code(&run), 3, "{}", stderr(&run));
+    assert_eq!(grids(&refined(&bench), 2), [8, 16, 32]);
+    let status = stdout(&bench.look("status", &[])).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(status.contains("grid error of Θ ") && status.contains("on 32 points a side, above"), "{status}");
+}
+
 /// Files with changed bytes stop no command: a run computes them again, and its grids and tables are the same.
 #[test]
 fn e2e_damaged_tables_of_a_refined_run_are_repaired() {

@@ -365,24 +365,37 @@ fn curve(
         places[count % BLOCK] = k as u8;
         count += usize::from(block.curved[k] != 0);
     }
-    let Block { before, bonds, gaps, changes: [tension, slope, energy], .. } = block;
+    let Block { before, bonds, gaps, changes, .. } = block;
     let places = places[..count].iter().map(|k| usize::from(*k)).enumerate();
     for (j, k) in places.clone() {
         let after = points.gap[k] + points.displacement[k];
         [gaps[0][j], gaps[1][j], gaps[2][j]] = [points.gap[k], before[k], after].map(f64::from);
         bonds[j] = points.bonds[k];
     }
-    for j in 0..count {
-        let [begin, before, after] = [gaps[0][j], gaps[1][j], gaps[2][j]];
-        let (first, old, new) =
-            (bond(bonds[j], begin).tension, bond(bonds[j], before), bond(bonds[j], after));
-        tension[j] = (new.tension - first) as f32;
-        slope[j] = new.slope as f32;
-        energy[j] = (new.energy - old.energy - old.tension * (after - before)) as f32;
-    }
+    change(bonds, gaps, count, bond, changes);
+    let [tension, slope, energy] = changes;
     for (j, k) in places {
         points.gradient[k] = points.residual[k] + points.pressure[k] - centre + tension[j];
         points.slopes[k] = slope[j];
         beyond[k] = energy[j];
+    }
+}
+
+/// Changes of the law at the first points of a block, as in [`Block`].
+#[inline(always)]
+fn change(
+    bonds: &[Bonding; BLOCK],
+    gaps: &[[f64; BLOCK]; 3],
+    count: usize,
+    bond: impl Fn(Bonding, f64) -> Bond,
+    to: &mut [[f32; BLOCK]; 3],
+) {
+    for j in 0..count.min(BLOCK) {
+        let [begin, before, after] = [gaps[0][j], gaps[1][j], gaps[2][j]];
+        let (first, old, new) =
+            (bond(bonds[j], begin).tension, bond(bonds[j], before), bond(bonds[j], after));
+        to[0][j] = (new.tension - first) as f32;
+        to[1][j] = new.slope as f32;
+        to[2][j] = (new.energy - old.energy - old.tension * (after - before)) as f32;
     }
 }
