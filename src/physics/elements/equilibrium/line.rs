@@ -48,8 +48,7 @@ pub(super) struct Row {
     pub(super) profiles: Vec<Steep>,
 }
 
-/// Derivatives of φ at a point, as in [`Profile`](crate::elements::law::Profile), and its change of first
-/// order in the last step.
+/// Derivatives of φ at a point, as in [`Profile`], and its change of first order in the last step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Steep {
     pub(super) rate: f64,

@@ -73,7 +73,7 @@ pub(crate) fn panel_sums<const M: usize, const N: usize>(
     sum
 }
 
-/// The larger of two numbers, `a` if `b` is none.
+/// The larger of two values, `a` if `b` is not a number.
 #[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
