@@ -7,7 +7,7 @@ use std::sync::{Arc, LazyLock};
 /// Spacing of a table, in ℓ.
 pub(super) const TABLE_SPACING: f64 = 1.0 / NODES_PER_UNIT;
 pub(super) const NODES_PER_UNIT: f64 = 100.0;
-/// Nodes of a table: those of the law, about 500, and zeros. A power of two.
+/// Nodes of a table: those of the law, about 400, and zeros. A power of two.
 const NODES: usize = 1024;
 /// Tension at which the law ends, in E*ℓ/dx.
 const END_TENSION: f64 = 1e-7;
