@@ -6,7 +6,8 @@
 use super::{Campaign, CycleUnit, Stage, Standing, SurfaceUnit};
 use crate::keys::{canonical, key_of_text, preimage};
 use crate::model::{
-    Choice, FrontLaw, GeneratedSurface, MeasuredSurface, MethodOptions, SurfaceSource, TabulatedSpectrum,
+    Choice, Control, FrontLaw, GeneratedSurface, MeasuredSurface, MethodOptions, SurfaceSource,
+    TabulatedSpectrum,
 };
 use crate::physics::asperities::Asperities;
 use crate::physics::cycle::Method;
@@ -233,6 +234,9 @@ pub(crate) const ELEMENTS_VERSION: u32 = 10;
 /// Version of all other cycles with the plain law, as above.
 const PLAIN_VERSION: u32 = 11;
 
+/// Version of all other cycles with the corrected law, as above.
+const CORRECTED_VERSION: u32 = 12;
+
 /// Present version of the asperity model.
 pub(crate) const fn asperities_version() -> u32 {
     present(Asperities::VERSIONS)
@@ -258,8 +262,11 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
         }
         MethodOptions::Elements(options) => {
             let is_first = params.surface.is_periodic() && params.cycle.max_load.len() == 1;
+            let is_soft = params.machine.control == Control::Load || params.machine.compliance_m_n > 0.0;
+            let has_images = !params.surface.is_periodic() && params.probe.is_none();
             let version = match options.attraction.law() {
-                Some(FrontLaw::Corrected) => present(Elements::VERSIONS),
+                _ if is_soft && has_images => present(Elements::VERSIONS),
+                Some(FrontLaw::Corrected) => CORRECTED_VERSION,
                 _ if is_first => ELEMENTS_VERSION,
                 _ => PLAIN_VERSION,
             };

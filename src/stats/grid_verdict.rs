@@ -21,6 +21,8 @@ struct Columns<'a> {
     means: &'a [Option<f64>],
     highs: &'a [Option<f64>],
     grid: &'a [Option<f64>],
+    area: &'a [Option<f64>],
+    pull_off: &'a [Option<f64>],
     of_grids: &'a [Option<i64>],
     done: Vec<i64>,
     methods: Vec<&'a str>,
@@ -32,6 +34,8 @@ impl<'a> Columns<'a> {
             means: cases.f64_or_null("loss_mean")?,
             highs: cases.f64_or_null("loss_ci95_high")?,
             grid: cases.f64_or_null("loss_grid_error")?,
+            area: cases.f64_or_null("area_grid_error")?,
+            pull_off: cases.f64_or_null("pull_off_grid_error")?,
             of_grids: cases.i64_or_null("grid_surface_count")?,
             done: cases.i64("done_count")?,
             methods: cases.text("method")?,
@@ -43,9 +47,11 @@ impl<'a> Columns<'a> {
         self.means[row].filter(|_| self.methods[row] == Method::BoundaryElements.word())
     }
 
-    /// Θ of a row with a grid error.
+    /// Θ of a row with its grid error, and those of the other results.
     fn sentence(&self, row: usize) -> Option<String> {
         let (mean, error) = self.mean(row).zip(self.grid[row])?;
+        let others = [("A", self.area[row]), ("F_po", self.pull_off[row])].into_iter();
+        let others = others.filter_map(|(of, error)| Some(format!(", {of} ± {}", grid_percent(error?))));
         let surfaces = count(self.done[row]);
         let of_surfaces = self.highs[row].filter(|_| mean != 0.0).map_or_else(
             || format!(" ({surfaces})"),
@@ -54,13 +60,19 @@ impl<'a> Columns<'a> {
         // Surfaces that a coarser grid lacks are in the mean and not in the error.
         let fewer = self.of_grids[row].filter(|of| *of < self.done[row]);
         let grid = fewer.map_or_else(|| "grid".to_owned(), |of| format!("grid, {}", count(of)));
-        Some(format!("Θ = {} ± {} ({grid}){of_surfaces}", number(mean), grid_percent(error)))
+        let others: String = others.collect();
+        Some(format!("Θ = {} ± {} ({grid}){of_surfaces}{others}", number(mean), grid_percent(error)))
+    }
+
+    /// Θ of a row without a grid error.
+    fn unknown(&self, row: usize) -> Option<String> {
+        Some(format!("Θ = {}, grid error unknown", number(self.mean(row)?)))
     }
 }
 
-/// `Θ = 1.46e-3 ± 3 % (grid) ± 12 % (six surfaces)` of a row of the table `cases`: the mean over
-/// E* A0 h_rms, its estimated discretization error, and the half-width of its 95 % confidence interval.
-/// Nothing without a discretization error.
+/// `Θ = 1.46e-3 ± 3 % (grid) ± 12 % (six surfaces), A ± 1 %, F_po ± 5 %` of a row of the table `cases`: the
+/// mean over E* A0 h_rms, its estimated discretization error, the half-width of its 95 % confidence interval,
+/// and the discretization errors of contact area and pull-off force. Nothing without the first error.
 ///
 /// # Errors
 /// If the table lacks a column.
@@ -90,11 +102,15 @@ pub fn grid_help(cases: &Frame, rows: &[usize]) -> Result<Option<String>, StatsE
     Ok(is_unknown.then(|| format!("grid error unknown; boundary_elements.{list} estimates it")))
 }
 
-/// Sentences on the listed rows, each with its case and load, and the rest of them as a number.
+/// Sentences on the listed rows, each with its case and load, and the rest of them as a number; none if no row
+/// of the table has a grid error.
 pub(super) fn lines(cases: &Frame, rows: &[Listed], loads: &[String]) -> Result<Vec<String>, StatsError> {
     let columns = Columns::of(cases)?;
+    if columns.grid.iter().all(Option::is_none) {
+        return Ok(Vec::new());
+    }
     let of = |listed: &Listed| {
-        let sentence = columns.sentence(listed.row)?;
+        let sentence = columns.sentence(listed.row).or_else(|| columns.unknown(listed.row))?;
         let label = listed.label.replace(" = ", "=");
         Some(format!("{label}, F_max={}: {sentence}", loads.get(listed.row)?))
     };

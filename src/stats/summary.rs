@@ -35,8 +35,8 @@ const OF_TIP: &str = ", of a probe with R_tip = R.";
 const REFERENCE: &str = "*: reference case. change: relative to it, where all realizations finished.";
 
 const ERRORS: &str = "\
-Θ by boundary elements: ± estimated error of the grid, and ± half-width of the
-95 % confidence interval of the mean over surfaces.";
+By boundary elements: Θ ± estimated error of the grid, and ± half-width of the
+95 % confidence interval of the mean over surfaces; A, F_po ± those of the grid.";
 
 /// Four results of a row: heading, column of the table `cases` without its ending, and factor to the unit of
 /// the heading.

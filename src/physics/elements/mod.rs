@@ -66,6 +66,10 @@ const VERSIONS: &[(u32, &str)] = &[
          images. One load on a periodic surface: as 10",
     ),
     (12, "step of the line tension ahead of the front. Plain law: as 11"),
+    (
+        13,
+        "mirror images of a scan on a soft machine or under load control move alike. Everything else: as 12 or 11",
+    ),
 ];
 
 /// A surface that boundary elements load and unload.

@@ -260,6 +260,12 @@ impl Problem {
         self.half_space.apply(Operator::Stiffness, &state.displacement, &mut state.pressure, waves);
     }
 
+    /// True if every change is made alike on a surface and its mirror images. On a soft machine the event of
+    /// one image would unload the others, and only rounding would decide which one has it.
+    pub(super) fn moves_images_alike(&self) -> bool {
+        self.half_space.is_mirrored() && self.machine_compliance > 0.0
+    }
+
     /// True if no point is bonded.
     pub(super) fn is_free(&self, state: &State) -> bool {
         state.bonds.iter().all(|bonding| *bonding == Bonding::Free)

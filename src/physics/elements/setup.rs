@@ -139,14 +139,18 @@ pub(super) fn problem(
     };
     let half_space = HalfSpace::of(&medium(units, options), units.points, units.points)?;
     let half_space = if units.is_mirrored { half_space.with_images() } else { half_space };
-    Ok(Problem {
+    let mut problem = Problem {
         half_space,
         law,
         heights,
         attraction,
         machine_compliance: units.machine_compliance,
         numerics: options.numerics,
-    })
+    };
+    if problem.moves_images_alike() {
+        problem.half_space.mirror(&mut problem.heights);
+    }
+    Ok(problem)
 }
 
 /// Settings at a ratio `U_el/Δγ`.

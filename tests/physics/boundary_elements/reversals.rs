@@ -1,10 +1,14 @@
 //! Several load reversals of one path: they do not change one another, full contact is one of them, and a load that has no result leaves the others.
 
 use super::{BONDED, problem, settings};
+use hysteron::model::{Control, Machine, Material};
 use hysteron::physics::elements::law::Law;
 use hysteron::physics::elements::path::cycle::{Cycle, Step, run};
 use hysteron::physics::elements::problem::{Attraction, Problem};
+use hysteron::physics::elements::{Elements, Options};
+use hysteron::physics::surface::HeightMap;
 use hysteron::physics::{LoopError, PhysicsError};
+use ndarray::Array2;
 use std::f64::consts::TAU;
 
 const N: usize = 32;
@@ -52,6 +56,38 @@ fn law_smaller_loads_do_not_change_larger_ones() {
         let steps: f64 = together.steps.iter().map(|step| step.dissipated).sum();
         assert!((events - steps).abs() <= 1e-12 * steps && together.events.iter().all(|event| event.dissipated > 0.0));
     }
+}
+
+/// The search for a load that is not reached dissipates energy that the path never does. The unloading from a smaller load does not have to pay for it.
+#[test]
+fn reg_a_search_in_vain_leaves_no_debt() {
+    let edges = Attraction::Bonded { margin: 2, nucleation: 0.0, strength: f64::INFINITY };
+    let problem = problem(N, N, wavy(1.0), Law::crack(0.03), edges);
+    let together = loop_to(&problem, &[0.003, 0.3, 0.4], 0.08).unwrap();
+    assert_eq!(together.unreached.len(), 2);
+    assert_eq!(unloading(&together, 0), unloading(&loop_to(&problem, &[0.003], 0.08).unwrap(), 0));
+}
+
+/// Under load control the displacement of a scan is, to the last bit, that of its mirror images.
+#[test]
+fn law_mirror_images_under_load_control_move_alike() {
+    let n = N / 2;
+    let wave = |x: f64, y: f64| 1e-6 * ((7.0 * x + 0.3).sin() + (9.0 * y + 2.0).cos() + 0.7 * (11.0 * x - 6.0 * y).sin() + x * y);
+    let heights = Array2::from_shape_fn((n, n), |(i, j)| wave(i as f64 / n as f64, j as f64 / n as f64));
+    let map =
+        HeightMap { heights_m: heights.view(), length_m: 6.4e-5, is_periodic: false, shortest_wavelength_m: 3.2e-5, rms_height_m: 1e-6 };
+    let material = Material { contact_modulus_pa: 1e6, work_of_adhesion_j_m2: 0.03, interaction_range_m: 1e-9 };
+    let machine = Machine { control: Control::Load, ..Machine::default() };
+    let options = Options { points: N, machine, approach_step: 0.1, ..Options::default() };
+    let elements = Elements::new(&map, &material, &[0.004], &options).unwrap();
+    let cycle = run(&elements.problem, &elements.settings, None, &mut |_| {}, &|_| {}).unwrap();
+    let state = &cycle.turning[0].state;
+    for (row, column) in (0..n).flat_map(|row| (0..n).map(move |column| (row, column))) {
+        let at = |row: usize, column: usize| (state.displacement[row * N + column].to_bits(), state.bonds[row * N + column]);
+        let images = [at(N - 1 - row, column), at(row, N - 1 - column), at(N - 1 - row, N - 1 - column)];
+        assert_eq!(images, [at(row, column); 3], "row {row}, column {column}");
+    }
+    assert!(state.displacement.iter().any(|moved| *moved != 0.0));
 }
 
 /// Two sinusoids pressed flat: the load at which the tension in the middle of the valleys is the strength follows from the pressure of full contact,

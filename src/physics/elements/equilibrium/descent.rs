@@ -26,7 +26,11 @@ impl Minimiser {
         let weights = weights.map(|weight| weight as f32);
         let right =
             Right { field: &gradient.values, mean: gradient.mean as f32, changes: pairs.changes(), weights };
-        preconditioner.divide(problem, single, direction, &right, slopes)
+        let products = preconditioner.divide(problem, single, direction, &right, slopes);
+        if problem.moves_images_alike() {
+            problem.half_space.mirror(direction);
+        }
+        products
     }
 
     /// Adds the weighted steps of the pairs to the direction and transforms its rows.

@@ -73,8 +73,12 @@ impl Minimiser {
             outcome.iterations += self.conjugate_gradients(problem, &mut found);
             std::mem::swap(&mut self.direction, &mut found.step);
             std::mem::swap(&mut self.response, &mut found.response);
-            if problem.law.has_line() {
-                // The response of the conjugate gradients is not elastic alone.
+            let alike = problem.moves_images_alike();
+            if alike {
+                problem.half_space.mirror(&mut self.direction);
+            }
+            if alike || problem.law.has_line() {
+                // The response of the conjugate gradients is not that of the direction alone.
                 let Self { direction, response, single, .. } = self;
                 problem.half_space.apply(Operator::Stiffness, direction, response, single);
             }
@@ -121,6 +125,9 @@ impl Minimiser {
         let [stiffness] =
             total(inner.stiff.par_chunks(PANEL).map(|stiff| panel_sums([stiff], |[stiff]| [stiff])));
         self.return_scratch(inner);
+        if problem.moves_images_alike() {
+            problem.half_space.mirror(&mut found.step);
+        }
         Ok(Rate { stiffness, displacement: found.step })
     }
 

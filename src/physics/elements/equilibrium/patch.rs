@@ -52,6 +52,7 @@ impl Patches {
         let largest = grid.rows().min(grid.columns()) / limits.sides_of_grid;
         if largest < SMALLEST_SIDE
             || grid.is_patch()
+            || problem.moves_images_alike()
             || !matches!(problem.attraction, Attraction::Bonded { .. })
         {
             return Ok(Self::none());

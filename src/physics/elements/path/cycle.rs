@@ -219,7 +219,8 @@ impl CycleRun<'_> {
         let turning = &self.at.cycle.turning[reversal];
         self.at.state = turning.state.clone();
         self.at.last = Step { reversal: Some(reversal), work: 0.0, ..turning.last };
-        self.at.dissipated = turning.dissipated;
+        // A search for a load that was not reached may have left a debt.
+        (self.at.dissipated, self.at.owed) = (turning.dissipated, 0.0);
         (self.rate, self.at.level, self.at.max_tension, self.at.trunk) = (None, 0, None, None);
         self.at.labels = label(self.problem, &self.at.state);
         let next = self.at.cycle.steps.len();
