@@ -51,7 +51,9 @@ impl<'a> Columns<'a> {
     fn sentence(&self, row: usize) -> Option<String> {
         let (mean, error) = self.mean(row).zip(self.grid[row])?;
         let others = [("A", self.area[row]), ("F_po", self.pull_off[row])].into_iter();
-        let others = others.filter_map(|(of, error)| Some(format!(", {of} ± {}", grid_percent(error?))));
+        let others = others.filter_map(|(of, error)| {
+            Some(format!(", {of}\u{a0}±\u{a0}{}", grid_percent(error?).replace(' ', "\u{a0}")))
+        });
         let surfaces = count(self.done[row]);
         let of_surfaces = self.highs[row].filter(|_| mean != 0.0).map_or_else(
             || format!(" ({surfaces})"),
@@ -77,7 +79,7 @@ impl<'a> Columns<'a> {
 /// # Errors
 /// If the table lacks a column.
 pub fn grid_verdict(cases: &Frame, row: usize) -> Result<Option<String>, StatsError> {
-    Ok(Columns::of(cases)?.sentence(row))
+    Ok(Columns::of(cases)?.sentence(row).map(|sentence| sentence.replace('\u{a0}', " ")))
 }
 
 /// Help where some rows have results by boundary elements, and none has a grid error; nothing otherwise.
@@ -102,8 +104,8 @@ pub fn grid_help(cases: &Frame, rows: &[usize]) -> Result<Option<String>, StatsE
     Ok(is_unknown.then(|| format!("grid error unknown; boundary_elements.{list} estimates it")))
 }
 
-/// Sentences on the listed rows, each with its case and load, and the rest of them as a number; none if no row
-/// of the table has a grid error.
+/// Sentences on the listed rows, each with its case and load, and the rest of them as a number. None if no
+/// row of the table has a grid error.
 pub(super) fn lines(cases: &Frame, rows: &[Listed], loads: &[String]) -> Result<Vec<String>, StatsError> {
     let columns = Columns::of(cases)?;
     if columns.grid.iter().all(Option::is_none) {

@@ -68,7 +68,8 @@ const VERSIONS: &[(u32, &str)] = &[
     (12, "step of the line tension ahead of the front. Plain law: as 11"),
     (
         13,
-        "mirror images of a scan on a soft machine or under load control move alike. Everything else: as 12 or 11",
+        "mirror images of a scan move alike on a soft machine and under load control. Everything else: as 12, \
+         10 and 11",
     ),
 ];
 
