@@ -68,8 +68,7 @@ const VERSIONS: &[(u32, &str)] = &[
     (12, "step of the line tension ahead of the front. Plain law: as 11"),
     (
         13,
-        "mirror images of a scan move alike on a soft machine and under load control. Everything else: as 12, \
-         10 and 11",
+        "mirror images of a scan move alike on a soft machine and under load control. All else: as 10 to 12",
     ),
 ];
 
