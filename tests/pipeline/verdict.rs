@@ -255,3 +255,17 @@ fn e2e_auto_chooses_from_the_scan_and_writes_the_choice() {
     let said = stderr(&refused);
     assert!(code(&refused) == 2 && said.contains("\"auto\" cannot be chosen from the scan") && said.contains("help: "), "{said}");
 }
+
+/// Under load control a loop takes 3 to 21 times as long: one of a minute is then announced as a long one.
+#[test]
+fn reg_the_plan_of_load_control() {
+    let plan = |control: &str| {
+        let bench = Bench::new(&format!(
+            "name = \"x\"\nrealizations = 1\nsurface.magnification = 4\nmodel.method = \"boundary_elements\"\n\
+             boundary_elements.points = 512\nmachine.control = \"{control}\"\n"
+        ));
+        stdout(&bench.verb("plan", &[]))
+    };
+    let [free, held] = ["load", "displacement"].map(plan);
+    assert!(free.contains("warning[long_loop]") && !held.contains("warning[long_loop]"), "{free}{held}");
+}

@@ -74,7 +74,7 @@ fn long_loops(all: &[Costly<'_>]) -> Option<Outside> {
     let longest = long.iter().max_by(|a, b| a.cost.seconds.total_cmp(&b.cost.seconds))?;
     let minutes = || long.iter().map(|of| of.cost.seconds / 60.0);
     let range = [minutes().reduce(f64::min)?, minutes().reduce(f64::max)?];
-    let (cost_of_all, loads) = (longest.cost, longest.of.params.cycle.max_load.len());
+    let cost_of_all = longest.cost;
     let smaller = (1..).map(|half| cost_of_all.points >> half).take_while(|points| *points >= 16);
     let enough = |points: u64| cost_of_all.per_wavelength * points as f64 / cost_of_all.points as f64;
     let seconds = |points: u64| {
@@ -84,7 +84,7 @@ fn long_loops(all: &[Costly<'_>]) -> Option<Outside> {
             range_m: None,
             is_mirrored: false,
         };
-        cost(&lattice, loads, longest.ratio, 0.0).seconds
+        cost(&lattice, longest.of.params, longest.ratio, 0.0).seconds
     };
     let advice = smaller
         .take_while(|points| enough(*points) >= FEWEST_PER_WAVELENGTH)

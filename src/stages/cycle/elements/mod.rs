@@ -56,7 +56,7 @@ impl ElementsCase<'_> {
         let of_generated = self.params.surface.generated().map(|surface| surface.rms_height_m);
         let rms_height_m = of_generated.or_else(|| known.map(|known| known.header.rms_height_m))?;
         let range_steps = self.range_steps(&lattice, rms_height_m).unwrap_or_default();
-        let cost = cost::cost(&lattice, self.params.cycle.max_load.len(), ratio, range_steps);
+        let cost = cost::cost(&lattice, self.params, ratio, range_steps);
         let shortest =
             known.and_then(Known::found).map_or(1.0, |found| found.estimates.per_shortest_wavelength(1.0));
         Some(Cost { per_wavelength: shortest * cost.per_wavelength, ..cost })
