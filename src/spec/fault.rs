@@ -68,7 +68,11 @@ impl SpecErrors {
         let message = format!("cannot read the spec: {cause}");
         Self {
             file: file.to_owned(),
-            faults: vec![Fault { message, help: None, place: None }],
+            faults: vec![Fault {
+                message,
+                help: Some("give the path of a spec; `hysteron init > first.toml` writes one".to_owned()),
+                place: None,
+            }],
             more: 0,
             settings: Vec::new(),
         }

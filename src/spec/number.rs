@@ -18,14 +18,16 @@ pub(super) fn number(
         DeValue::Float(float) => real(float),
         DeValue::Integer(_) => integer(path, value, faults)? as f64,
         other => {
-            wrong_type(path, "a number", other, &span, unquoted(other), faults);
+            let help = unquoted(other).unwrap_or_else(|| note(limits));
+            wrong_type(path, "a number", other, &span, help, faults);
             return None;
         }
     };
     let written = faults.written(&span);
     if !found.is_finite() {
         let what = if found.is_nan() { "is not a number" } else { "is infinite" };
-        faults.add(&span, format!("`{path}` cannot be {written}, which {what}: {}", allowed(limits)), None);
+        let message = format!("`{path}` cannot be {written}, which {what}: {}", allowed(limits));
+        faults.add(&span, message, note(limits));
         return None;
     }
     if limits.hold(found) {
@@ -36,9 +38,18 @@ pub(super) fn number(
         let right = short(rounded(found * size));
         format!("is this in {unit}? {name} is in {}: write {right}", limits.unit_name)
     });
-    let help = slip.or_else(|| (!limits.note.is_empty()).then(|| limits.note.to_owned()));
+    let help = slip.unwrap_or_else(|| note(limits));
     faults.add(&span, format!("`{path}` cannot be {written}{}: {}", limits.unit, allowed(limits)), help);
     None
+}
+
+/// Meaning of the number, as far as it is stated, or its unit.
+fn note(limits: &Limits) -> String {
+    match (limits.note, limits.unit_name) {
+        ("", "") => "write a number within these bounds".to_owned(),
+        ("", unit) => format!("it is in {unit}"),
+        (note, _) => note.to_owned(),
+    }
 }
 
 /// The bounds as half a sentence.
@@ -67,7 +78,7 @@ pub(super) fn numbers(
     if elements.is_empty() || elements.len() > most {
         let message =
             format!("`{path}` cannot have {} values: it must have from 1 to {most}", elements.len());
-        faults.add(&value.span(), message, None);
+        faults.add(&value.span(), message, note(limits));
         return None;
     }
     let before = faults.count();
@@ -113,7 +124,7 @@ pub(super) fn integer(path: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
             DeValue::Float(float) if real(float).fract() == 0.0 && real(float).abs() < 1e15 => {
                 Some(format!("write {:.0}, without a point", real(float)))
             }
-            other => unquoted(other),
+            other => Some(unquoted(other).unwrap_or_else(|| "write a whole number, such as 8".to_owned())),
         };
         wrong_type(path, "an integer", value.get_ref(), &span, help, faults);
         return None;
@@ -122,7 +133,7 @@ pub(super) fn integer(path: &str, value: &Written<'_>, faults: &mut Faults<'_>) 
     if whole.is_none() {
         let message =
             format!("`{path}` cannot be {}: a TOML integer has at most 64 bits", faults.written(&span));
-        faults.add(&span, message, None);
+        faults.add(&span, message, format!("write at most {}", i64::MAX));
     }
     whole
 }

@@ -131,12 +131,12 @@ fn count(path: &str, least: u32, value: &Written<'_>, faults: &mut Faults<'_>) -
     let count = u32::try_from(found).ok().filter(|count| (least..=MAX_REALIZATIONS).contains(count));
     if count.is_none() {
         let message = format!("`{path}` cannot be {found}: it must be from {least} to {MAX_REALIZATIONS}");
-        // One has no spread.
-        faults.add(
-            &value.span(),
-            message,
-            (least > 1).then(|| "a standard deviation requires at least two realizations".to_owned()),
-        );
+        let help = if least > 1 {
+            "a standard deviation requires at least two realizations"
+        } else {
+            "the number of surfaces of each case"
+        };
+        faults.add(&value.span(), message, help.to_owned());
     }
     count
 }
@@ -178,7 +178,7 @@ fn until(value: &Written<'_>, known: Option<Until>, faults: &mut Faults<'_>) -> 
         faults.add(
             &limits,
             format!("`realizations.max` cannot be {max}: it must be at least `min`, which is {min}"),
-            None,
+            "raise `max`, or lower `min`".to_owned(),
         );
     }
     (faults.count() == before).then_some(Until { until_relative_ci: precision?, of, min, max })

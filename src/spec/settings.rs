@@ -10,7 +10,7 @@ use super::keys::{TABLES, find};
 use super::origin::Origin;
 use super::realizations::{DEFAULT, Realizations};
 use super::sweep::SweepDraft;
-use super::walk::{Draft, enter};
+use super::walk::{Draft, TOML, enter};
 use super::{SpecErrors, coarser};
 use crate::text::quoted;
 
@@ -70,7 +70,7 @@ fn set(number: usize, text: &str, draft: &mut Draft, faults: &mut Faults<'_>) {
         faults.add(
             &error.span().unwrap_or(0..text.len()),
             format!("the setting is not valid TOML: {}", error.message()),
-            None,
+            TOML.to_owned(),
         );
         return;
     }

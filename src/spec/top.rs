@@ -15,7 +15,8 @@ pub(super) fn seed(value: &Written<'_>, faults: &mut Faults<'_>) -> Option<u64> 
     let seed = u64::try_from(found).ok();
     if seed.is_none() {
         let message = format!("`seed` cannot be {found}: it must be from 0 to {}", i64::MAX);
-        faults.add(&value.span(), message, None);
+        let help = "every such number gives other surfaces, and one number the same again".to_owned();
+        faults.add(&value.span(), message, help);
     }
     seed
 }

@@ -71,6 +71,10 @@ const TOP: [&str; 17] = [
     "experiment",
 ];
 
+/// Help for text that is no TOML.
+pub(super) const TOML: &str = "each line is `key = value`, strings in quotes, lists in brackets, each key \
+                               once; `hysteron init` prints a spec";
+
 /// Reads a whole spec. Nothing, with the faults added, if it is no TOML.
 pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
     let (root, broken) = DeTable::parse_recoverable(text);
@@ -81,7 +85,8 @@ pub(super) fn document(text: &str, faults: &mut Faults<'_>) -> Option<Draft> {
             let line = faults.line(&span);
             // A parser that recovers stumbles over the rest of the same line.
             if lines.insert(line) {
-                faults.add_with(&span, || (format!("the spec is not valid TOML: {}", error.message()), None));
+                let message = || format!("the spec is not valid TOML: {}", error.message());
+                faults.add_with(&span, || (message(), Some(TOML.to_owned())));
             }
         }
         return None;

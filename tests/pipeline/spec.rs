@@ -202,3 +202,34 @@ fn val_the_sensitivity_varies_one_choice_at_a_time() {
     );
     assert_eq!(choices.len(), names.len());
 }
+
+/// Every error says what to do, those of wrong types, numbers out of bounds and broken TOML too.
+#[test]
+fn val_every_error_of_a_spec_has_a_help() {
+    let lines = [
+        "seed = -1",
+        "seed = \"a\"",
+        "seed = 99999999999999999999",
+        "realizations = 0",
+        "realizations = { until_relative_ci = 0.1, min = 10, max = 3 }",
+        "surface.magnification = 3.5",
+        "surface.hurst = nan",
+        "surface.hurst = true",
+        "surface.length_m = inf",
+        "cycle.max_load = []",
+        "cycle.max_load = [\"a\"]",
+        "boundary_elements.points = \"a\"",
+        "boundary_elements.points = 64.5",
+        "boundary_elements.points = [[16, 32], [32, 64]]",
+        "boundary_elements.error = \"x\"",
+        "boundary_elements.error = nan",
+        "boundary_elements.shifted_copies = 1.5",
+        "seed = [1",
+        "name = \"again\"",
+    ];
+    for line in lines {
+        let rendered = Spec::parse(&format!("name = \"x\"\n{line}\n"), "x.toml").expect_err(line).to_string();
+        let (errors, helps) = (rendered.matches("error: ").count(), rendered.matches("= help: ").count());
+        assert!(errors > 0 && errors == helps, "{line}:\n{rendered}");
+    }
+}

@@ -19,8 +19,8 @@ const OF_LOAD_CONTROL: f64 = 12.0;
 /// Time of a loop that is announced before it starts \[s\].
 pub(in super::super) const LONG: f64 = 600.0;
 
-/// Memory and time of a loop of the parameters at a ratio `U_el/Δγ`; `range_steps` are the steps over the gaps
-/// at which an attraction with a range acts.
+/// Memory and time of a loop of the parameters at a ratio `U_el/Δγ`; `range_steps` are the steps over the
+/// gaps at which an attraction with a range acts.
 pub(super) fn cost(lattice: &Lattice, params: &CaseParams, ratio: Option<f64>, range_steps: f64) -> Cost {
     let loads = params.cycle.max_load.len();
     let of_control = if params.machine.control == Control::Load { OF_LOAD_CONTROL } else { 1.0 };
