@@ -41,21 +41,16 @@
     const raised = power && power.replace("+", "").replace(/./g, (c) => ({ "-": "⁻" })[c] || "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]);
     return head.replace("-", "−") + (power ? " × 10" + raised : "");
   };
-  const length = (metres) => {
-    const [unit, scale] = metres >= 1e-3 ? ["mm", 1e3] : metres >= 1e-6 ? ["µm", 1e6] : ["nm", 1e9];
-    return number(metres * scale) + " " + unit;
-  };
-
-  const pascal = (value) => {
-    const [unit, scale] = [["GPa", 1e9], ["MPa", 1e6], ["kPa", 1e3]].find((of) => Math.abs(value) >= of[1]) || ["Pa", 1];
+  // A value in the first of some units that it reaches, or in the last.
+  const scaled = (value, units) => {
+    const [unit, scale] = units.find((of) => Math.abs(value) >= of[1]) || units[units.length - 1];
     return number(value / scale) + " " + unit;
   };
-  // Prefix and its factor for values up to a magnitude.
-  const prefix = (most) => [["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12]].find((of) => most >= of[1]) || ["f", 1e-15];
-  const metric = (value, unit) => {
-    const [letter, scale] = value ? prefix(Math.abs(value)) : ["", 1];
-    return `${number(value / scale)} ${letter}${unit}`;
-  };
+  const length = (metres) => scaled(metres, [["mm", 1e-3], ["µm", 1e-6], ["nm", 1e-9]]);
+  const pascal = (value) => scaled(value, [["GPa", 1e9], ["MPa", 1e6], ["kPa", 1e3], ["Pa", 1]]);
+  const PREFIXES = [["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12], ["f", 1e-15]];
+  const prefix = (most) => PREFIXES.find((of) => most >= of[1]) || PREFIXES[PREFIXES.length - 1];
+  const metric = (value, unit) => (value ? scaled(value, PREFIXES.map(([letter, scale]) => [letter + unit, scale])) : "0 " + unit);
   // Text with the subscripts of symbols, in HTML and in drawings.
   const parts = (text) => text.split(/_(rms|max)/);
   const rich = (element, text) => (element.replaceChildren(...parts(text).map((part, n) => (n % 2 ? html("sub", {}, part) : part))), element);
