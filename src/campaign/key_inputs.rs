@@ -263,9 +263,8 @@ fn of_case(params: &CaseParams) -> Vec<(&'static str, Value)> {
         MethodOptions::Elements(options) => {
             let is_first = params.surface.is_periodic() && params.cycle.max_load.len() == 1;
             let is_soft = params.machine.control == Control::Load || params.machine.compliance_m_n > 0.0;
-            let has_images = !params.surface.is_periodic() && params.probe.is_none();
             let version = match options.attraction.law() {
-                _ if is_soft && has_images => present(Elements::VERSIONS),
+                _ if is_soft && params.has_images() => present(Elements::VERSIONS),
                 Some(FrontLaw::Corrected) => CORRECTED_VERSION,
                 _ if is_first => ELEMENTS_VERSION,
                 _ => PLAIN_VERSION,

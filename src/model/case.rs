@@ -179,6 +179,12 @@ pub struct LoadingPath {
 }
 
 impl CaseParams {
+    /// True if boundary elements continue the surface by its mirror images.
+    #[must_use]
+    pub fn has_images(&self) -> bool {
+        !self.surface.is_periodic() && self.probe.is_none()
+    }
+
     /// Options of the asperity model, if it computes the case.
     #[must_use]
     pub fn asperities(&self) -> Option<&AsperityOptions> {

@@ -61,7 +61,7 @@ impl Lattice {
             points: points as usize,
             per_wavelength: f64::from(points) / wavelengths,
             range_m: of.options.range(of.params.material.adhesion_length_m(), spacing_m),
-            is_mirrored: !of.params.surface.is_periodic() && of.params.probe.is_none(),
+            is_mirrored: of.params.has_images(),
         }
     }
 
